@@ -1,0 +1,51 @@
+"""Stridewire: drive characters from control inputs and get poses back, 60 times a second."""
+
+from importlib import import_module
+from typing import Any
+
+_HOME = {
+    "__version__": "_version",
+    "Client": "client",
+    **dict.fromkeys(
+        (
+            "CharacterSpec",
+            "CorrectionMode",
+            "Detail",
+            "Frame",
+            "FrameFlag",
+            "GroundPose",
+            "Pacing",
+            "RootCorrection",
+            "Sparse",
+            "Trajectory",
+        ),
+        "_messages",
+    ),
+    **dict.fromkeys(
+        (
+            "ExhaustedError",
+            "InvalidRequestError",
+            "NotFoundError",
+            "NotImplementedYetError",
+            "ProtocolError",
+            "ServerError",
+            "StridewireError",
+            "UnavailableError",
+            "Violation",
+        ),
+        "_errors",
+    ),
+}
+
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name when it is first asked for (PEP 562), so that the kernel loads without gRPC."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"stridewire.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -1,0 +1,213 @@
+"""Quaternions `(..., 4)` in the order w, x, y, z, over arrays of any shape.
+
+Rotations are active and right-handed; `multiply(a, b)` turns by `b` first. The dtype of the inputs is
+kept, so the tick stays in float32 and building in float64. Scaled axes are rotation vectors `(..., 3)`
+in radians, so `from_scaled_axis` is the exponential of a rotation and `to_scaled_axis` its logarithm.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from stridewire.motion.array_types import Floats, Quaternions, Vectors
+
+IDENTITY = (1.0, 0.0, 0.0, 0.0)
+"""The quaternion that turns nothing."""
+
+_SMALL_ANGLE = 1e-5
+"""Below this the sine over its angle is 1 to double precision's square root."""
+
+
+def identity(*shape: int, dtype: type = np.float32) -> Quaternions:
+    """Return identity quaternions `(*shape, 4)`."""
+    out = np.zeros((*shape, 4), dtype)
+    out[..., 0] = 1.0
+    return out
+
+
+def multiply(a: Quaternions, b: Quaternions) -> Quaternions:
+    """Return the Hamilton product: turn by `b`, then by `a`.
+
+    Args:
+        a: `(..., 4)`.
+        b: `(..., 4)`, broadcast against `a`.
+    """
+    aw, ax, ay, az = np.moveaxis(a, -1, 0)
+    bw, bx, by, bz = np.moveaxis(b, -1, 0)
+    w = aw * bw - ax * bx - ay * by - az * bz
+    out = np.empty((*w.shape, 4), w.dtype)
+    out[..., 0] = w
+    out[..., 1] = aw * bx + ax * bw + ay * bz - az * by
+    out[..., 2] = aw * by - ax * bz + ay * bw + az * bx
+    out[..., 3] = aw * bz + ax * by - ay * bx + az * bw
+    return out
+
+
+def conjugate(q: Quaternions) -> Quaternions:
+    """Return the inverse of unit quaternions `(..., 4)`."""
+    out = -q
+    out[..., 0] = q[..., 0]
+    return out
+
+
+def rotate(q: Quaternions, v: Vectors) -> Vectors:
+    """Turn vectors `(..., 3)` by unit quaternions `(..., 4)`."""
+    u = q[..., 1:]
+    t = 2.0 * cross(u, v)
+    return v + q[..., :1] * t + cross(u, t)
+
+
+def cross(a: Vectors, b: Vectors) -> Vectors:
+    """Return the cross product of `(..., 3)` vectors, without the bookkeeping of `numpy.cross`."""
+    ax, ay, az = np.moveaxis(a, -1, 0)
+    bx, by, bz = np.moveaxis(b, -1, 0)
+    x = ay * bz - az * by
+    out = np.empty((*x.shape, 3), x.dtype)
+    out[..., 0] = x
+    out[..., 1] = az * bx - ax * bz
+    out[..., 2] = ax * by - ay * bx
+    return out
+
+
+def normalize(q: Quaternions) -> Quaternions:
+    """Scale `(..., 4)` to unit length.
+
+    Raises:
+        ValueError: If one has no length.
+    """
+    length = np.sqrt(np.sum(q * q, axis=-1, keepdims=True))
+    if not np.all(length > 0.0):
+        raise ValueError("a quaternion has zero length or is NaN; expected unit quaternions w, x, y, z")
+    return q / length
+
+
+def absolute(q: Quaternions) -> Quaternions:
+    """Choose of `q` and `-q` the one with w >= 0: the short way round."""
+    return np.where(q[..., :1] < 0.0, -q, q)
+
+
+def unroll(q: Quaternions) -> Quaternions:
+    """Flip signs along the first axis so that neighbours lie in one hemisphere.
+
+    Args:
+        q: `(T, ..., 4)`.
+    """
+    dots = np.sum(q[1:] * q[:-1], axis=-1, keepdims=True)
+    signs = np.cumprod(np.where(dots < 0.0, -1.0, 1.0), axis=0).astype(q.dtype)
+    return np.concatenate([q[:1], q[1:] * signs], axis=0)
+
+
+def from_scaled_axis(v: Vectors) -> Quaternions:
+    """Return the exponential of rotation vectors `(..., 3)` in radians."""
+    angle = np.sqrt(np.sum(v * v, axis=-1, keepdims=True))
+    half = 0.5 * angle
+    safe = np.where(angle < _SMALL_ANGLE, 1.0, angle)
+    scale = np.where(angle < _SMALL_ANGLE, 0.5, np.sin(half) / safe)
+    return np.concatenate([np.cos(half), v * scale], axis=-1).astype(v.dtype)
+
+
+def to_scaled_axis(q: Quaternions) -> Vectors:
+    """Return the logarithm of unit quaternions: rotation vectors `(..., 3)` of at most pi radians."""
+    q = absolute(q)
+    v = q[..., 1:]
+    sine = np.sqrt(np.sum(v * v, axis=-1, keepdims=True))
+    angle = 2.0 * np.arctan2(sine, q[..., :1])
+    safe = np.where(sine < _SMALL_ANGLE, 1.0, sine)
+    return (v * np.where(sine < _SMALL_ANGLE, 2.0, angle / safe)).astype(q.dtype)
+
+
+def from_axis_angle(axis: Vectors | Sequence[float], angle: Floats | float) -> Quaternions:
+    """Turn by `angle` radians about a unit `axis`.
+
+    Args:
+        axis: `(..., 3)`.
+        angle: `(...)`, broadcast against `axis`.
+    """
+    half = 0.5 * np.asarray(angle)[..., None]
+    sine = np.sin(half)
+    return np.concatenate(
+        np.broadcast_arrays(np.cos(half), *np.split(np.asarray(axis) * sine, 3, axis=-1)), axis=-1
+    )
+
+
+def from_yaw(yaw: Floats) -> Quaternions:
+    """Turn by `yaw` radians `(...)` about +Y: from +Z towards +X."""
+    out = np.zeros((*yaw.shape, 4), yaw.dtype)
+    out[..., 0] = np.cos(0.5 * yaw)
+    out[..., 2] = np.sin(0.5 * yaw)
+    return out
+
+
+def to_yaw(q: Quaternions) -> Floats:
+    """Return the heading `(...)` in radians of the turned +Z axis, projected to the ground."""
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    return np.arctan2(2.0 * (x * z + w * y), 1.0 - 2.0 * (x * x + y * y))
+
+
+def between(a: Vectors, b: Vectors) -> Quaternions:
+    """Return the shortest turn that takes direction `a` to direction `b`.
+
+    Args:
+        a: `(..., 3)`, any length but zero.
+        b: `(..., 3)`, any length but zero; for opposite directions the axis is arbitrary.
+    """
+    a = a / np.sqrt(np.sum(a * a, axis=-1, keepdims=True))
+    b = b / np.sqrt(np.sum(b * b, axis=-1, keepdims=True))
+    w = 1.0 + np.sum(a * b, axis=-1, keepdims=True)
+    other = np.where(np.abs(a[..., :1]) < 0.9, np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
+    opposite = w < 1e-7
+    axis = np.where(opposite, cross(a, other.astype(a.dtype)), cross(a, b))
+    return normalize(np.concatenate([np.where(opposite, 0.0, w), axis], axis=-1).astype(a.dtype))
+
+
+def nlerp(a: Quaternions, b: Quaternions, weight: Floats) -> Quaternions:
+    """Blend on the short side and normalise; weight `(...)` broadcasts, 0 gives `a`, 1 gives `b`."""
+    weight = weight[..., None]
+    b = np.where(np.sum(a * b, axis=-1, keepdims=True) < 0.0, -b, b)
+    mix = a + weight * (b - a)
+    return mix / np.sqrt(np.sum(mix * mix, axis=-1, keepdims=True))
+
+
+def slerp(a: Quaternions, b: Quaternions, weight: Floats) -> Quaternions:
+    """Turn from `a` to `b` at constant speed on the short side; weight `(...)` broadcasts."""
+    step = to_scaled_axis(multiply(b, conjugate(a)))
+    return multiply(from_scaled_axis(step * weight[..., None]), a)
+
+
+def angular_velocity(q: Quaternions, dt: float) -> Vectors:
+    """Return parent-space angular velocities `(T, ..., 3)` in rad/s by central differences.
+
+    The first and the last frame repeat their neighbour's one-sided difference.
+
+    Args:
+        q: `(T, ..., 4)` with T >= 2.
+        dt: Seconds between frames.
+    """
+    step = to_scaled_axis(multiply(q[1:], conjugate(q[:-1]))) / dt
+    out = np.empty((*q.shape[:-1], 3), q.dtype)
+    out[0], out[-1] = step[0], step[-1]
+    out[1:-1] = 0.5 * (step[1:] + step[:-1])
+    return out
+
+
+def from_euler(angles: Floats, order: str) -> Quaternions:
+    """Turn about the named axes, the last letter first: BVH's intrinsic channel order.
+
+    Args:
+        angles: `(..., len(order))` radians, one for each letter.
+        order: Letters of `xyz`, for instance `zyx`.
+    """
+    axes = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+    out = identity(*angles.shape[:-1], dtype=angles.dtype.type)
+    for i, letter in enumerate(order.lower()):
+        out = multiply(out, from_axis_angle(axes[letter], angles[..., i]).astype(angles.dtype))
+    return out
+
+
+def to_euler_zyx(q: Quaternions) -> Floats:
+    """Return angles `(..., 3)` in radians, z, y, x, such that `from_euler(..., "zyx")` gives `q`."""
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    yaw = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    pitch = np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0))
+    roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+    return np.stack([yaw, pitch, roll], axis=-1)
