@@ -41,7 +41,7 @@ __all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> Any:
-    """Load a public name when it is first asked for (PEP 562), so that the kernel loads without gRPC."""
+    """Load a public name when first asked for (PEP 562): the kernel loads without gRPC."""
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"stridewire.{_HOME[name]}"), name)

@@ -5,9 +5,10 @@
     ├── NotFoundError (also LookupError)          NOT_FOUND: no such library, clip, session
     ├── ProtocolError                             FAILED_PRECONDITION: messages out of order
     ├── ExhaustedError                            RESOURCE_EXHAUSTED: a limit, a reader too slow
-    ├── NotImplementedYetError                    UNIMPLEMENTED: a field or method of a later version
-    ├── UnavailableError                          UNAVAILABLE: no server there, or it is stopping
-    └── ServerError                               INTERNAL and the rest: a fault of the server
+    ├── NotImplementedYetError                    UNIMPLEMENTED: a field or method of a later
+    version ├── UnavailableError                          UNAVAILABLE: no server there, or it is
+    stopping └── ServerError                               INTERNAL and the rest: a fault of the
+    server
 
 Each carries `.code` (the gRPC code's name), `.violations` and `.retry_after_s`; `__cause__` is the
 transport's own error where there is one.

@@ -1,8 +1,8 @@
 """What travels between a client and a runtime, as plain dataclasses over numpy arrays.
 
-The wire format (`proto/stridewire/v1`) says units, frames, orders and limits of every field; these classes
-have its names and are what both transports exchange, so in process and over gRPC mean the same.
-Field paths in errors are those of the wire.
+The wire format (`proto/stridewire/v1`) says units, frames, orders and limits of every field; these
+classes have its names and are what both transports exchange, so in process and over gRPC mean the
+same. Field paths in errors are those of the wire.
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What a `Client` needs of whatever runs the characters: a server over gRPC or a runtime in this process."""
+"""What a `Client` needs of whatever runs the characters: a server, or a runtime in process."""
 
 from importlib.metadata import entry_points
 from typing import Protocol
@@ -63,7 +63,8 @@ def in_process_transport(library: str | None) -> Transport:
             factory = point.load()
         except ModuleNotFoundError as error:
             raise StridewireError(
-                f"running characters in this process needs {error.name}: pip install 'stridewire[server]'"
+                f"running characters in this process needs {error.name}: "
+                "pip install 'stridewire[server]'"
             ) from error
         transport: Transport = factory(library)
         return transport

@@ -133,7 +133,7 @@ class Clip:
         return (len(self) - 1) / self.frame_rate
 
     def sample(self, times: Floats | float) -> Pose:
-        """Return the poses at `times` `(...)` in seconds, clamped to the clip, between frames by nlerp."""
+        """Return the poses at `times` `(...)` seconds, within the clip, by nlerp between frames."""
         at = np.clip(np.asarray(times, np.float64) * self.frame_rate, 0.0, len(self) - 1)
         first = np.minimum(at.astype(np.intp), max(len(self) - 2, 0))
         second = np.minimum(first + 1, len(self) - 1)

@@ -15,8 +15,8 @@ _MEDIAN_S = 0.1
 def detect_contacts(skeleton: Skeleton, positions: Vectors, frame_rate: float) -> Flags:
     """Return `(T, 4)` flags: left foot, left toe, right foot, right toe planted.
 
-    A joint is planted below 0.15 m/s within 6 cm of its height at rest, and stays so up to 0.25 m/s; a
-    median over 0.1 s removes flicker.
+    A joint is planted below 0.15 m/s within 6 cm of its height at rest, and stays so up to 0.25
+    m/s; a median over 0.1 s removes flicker.
 
     Args:
         skeleton: Must have the four joints; its rest pose stands on the ground y = 0.
@@ -39,8 +39,8 @@ def rest_heights(skeleton: Skeleton, joints: Indices) -> Floats:
 
 
 def to_mask(contacts: Flags) -> Indices:
-    """Pack flags `(..., 4)` into masks `(...)`: 1 left foot, 2 left toe, 4 right foot, 8 right toe."""
-    return (contacts * np.array([1, 2, 4, 8], np.uint32)).sum(axis=-1, dtype=np.uint32)
+    """Pack flags `(..., 4)` into masks: 1 left foot, 2 left toe, 4 right foot, 8 right toe."""
+    return np.asarray((contacts * np.array([1, 2, 4, 8], np.uint32)).sum(-1, dtype=np.uint32))
 
 
 def _hysteresis(on: Flags, hold: Flags) -> Flags:

@@ -13,8 +13,8 @@ from stridewire.motion.skeleton import Skeleton
 def mirror_pose(skeleton: Skeleton, pose: Pose) -> Pose:
     """Reflect poses in the plane x = 0; twice gives the pose again.
 
-    Global positions become `(-x, y, z)`, global rotations `(w, x, -y, -z)`, and each joint takes its
-    partner's. Exact for skeletons whose rest pose is symmetric.
+    Global positions become `(-x, y, z)`, global rotations `(w, x, -y, -z)`, and each joint takes
+    its partner's. Exact for skeletons whose rest pose is symmetric.
     """
     _, turned = kinematics.forward(skeleton, pose.hips, pose.rotations)
     reflected = _reflect_rotation(turned)[..., skeleton.mirror, :]
@@ -27,7 +27,7 @@ def mirror_pose(skeleton: Skeleton, pose: Pose) -> Pose:
 
 
 def mirror_clip(clip: Clip) -> Clip:
-    """Reflect a clip; its name gets the suffix `-mirrored`, tags `left` and `right` change places."""
+    """Reflect a clip; `-mirrored` ends its name, tags `left` and `right` change places."""
     swap = {"left": "right", "right": "left"}
     return replace(
         clip,

@@ -1,8 +1,9 @@
 """Quaternions `(..., 4)` in the order w, x, y, z, over arrays of any shape.
 
-Rotations are active and right-handed; `multiply(a, b)` turns by `b` first. The dtype of the inputs is
-kept, so the tick stays in float32 and building in float64. Scaled axes are rotation vectors `(..., 3)`
-in radians, so `from_scaled_axis` is the exponential of a rotation and `to_scaled_axis` its logarithm.
+Rotations are active and right-handed; `multiply(a, b)` turns by `b` first. The dtype of the inputs
+is kept, so the tick stays in float32 and building in float64. Scaled axes are rotation vectors
+`(..., 3)` in radians, so `from_scaled_axis` is the exponential of a rotation and `to_scaled_axis`
+its logarithm.
 """
 
 from collections.abc import Sequence
@@ -10,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from stridewire.motion.array_types import Floats, Quaternions, Vectors
+from stridewire.motion.springs import wrap_angle
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 """The quaternion that turns nothing."""
@@ -20,7 +22,7 @@ _SMALL_ANGLE = 1e-5
 
 def identity(*shape: int, dtype: type = np.float32) -> Quaternions:
     """Return identity quaternions `(*shape, 4)`."""
-    out = np.zeros((*shape, 4), dtype)
+    out: Quaternions = np.zeros((*shape, 4), dtype)
     out[..., 0] = 1.0
     return out
 
@@ -77,8 +79,10 @@ def normalize(q: Quaternions) -> Quaternions:
     """
     length = np.sqrt(np.sum(q * q, axis=-1, keepdims=True))
     if not np.all(length > 0.0):
-        raise ValueError("a quaternion has zero length or is NaN; expected unit quaternions w, x, y, z")
-    return q / length
+        raise ValueError(
+            "a quaternion has zero length or is NaN; expected unit quaternions w, x, y, z"
+        )
+    return np.asarray(q / length)
 
 
 def absolute(q: Quaternions) -> Quaternions:
@@ -107,7 +111,7 @@ def from_scaled_axis(v: Vectors) -> Quaternions:
 
 
 def to_scaled_axis(q: Quaternions) -> Vectors:
-    """Return the logarithm of unit quaternions: rotation vectors `(..., 3)` of at most pi radians."""
+    """Return the logarithm: rotation vectors `(..., 3)` of at most pi radians."""
     q = absolute(q)
     v = q[..., 1:]
     sine = np.sqrt(np.sum(v * v, axis=-1, keepdims=True))
@@ -123,11 +127,11 @@ def from_axis_angle(axis: Vectors | Sequence[float], angle: Floats | float) -> Q
         axis: `(..., 3)`.
         angle: `(...)`, broadcast against `axis`.
     """
-    half = 0.5 * np.asarray(angle)[..., None]
-    sine = np.sin(half)
-    return np.concatenate(
-        np.broadcast_arrays(np.cos(half), *np.split(np.asarray(axis) * sine, 3, axis=-1)), axis=-1
-    )
+    arrays = [a for a in (axis, angle) if isinstance(a, np.ndarray)]
+    dtype = np.result_type(*arrays, np.float32) if arrays else np.float64
+    half = 0.5 * np.asarray(angle, dtype)[..., None]
+    v = np.asarray(axis, dtype) * np.sin(half)
+    return np.concatenate([np.broadcast_to(np.cos(half), (*v.shape[:-1], 1)), v], axis=-1)
 
 
 def from_yaw(yaw: Floats) -> Quaternions:
@@ -141,7 +145,7 @@ def from_yaw(yaw: Floats) -> Quaternions:
 def to_yaw(q: Quaternions) -> Floats:
     """Return the heading `(...)` in radians of the turned +Z axis, projected to the ground."""
     w, x, y, z = np.moveaxis(q, -1, 0)
-    return np.arctan2(2.0 * (x * z + w * y), 1.0 - 2.0 * (x * x + y * y))
+    return np.asarray(np.arctan2(2.0 * (x * z + w * y), 1.0 - 2.0 * (x * x + y * y)))
 
 
 def between(a: Vectors, b: Vectors) -> Quaternions:
@@ -161,11 +165,11 @@ def between(a: Vectors, b: Vectors) -> Quaternions:
 
 
 def nlerp(a: Quaternions, b: Quaternions, weight: Floats) -> Quaternions:
-    """Blend on the short side and normalise; weight `(...)` broadcasts, 0 gives `a`, 1 gives `b`."""
+    """Blend on the short side and normalise; a weight `(...)` of 0 gives `a`, 1 gives `b`."""
     weight = weight[..., None]
     b = np.where(np.sum(a * b, axis=-1, keepdims=True) < 0.0, -b, b)
     mix = a + weight * (b - a)
-    return mix / np.sqrt(np.sum(mix * mix, axis=-1, keepdims=True))
+    return np.asarray(mix / np.sqrt(np.sum(mix * mix, axis=-1, keepdims=True)))
 
 
 def slerp(a: Quaternions, b: Quaternions, weight: Floats) -> Quaternions:
@@ -205,9 +209,16 @@ def from_euler(angles: Floats, order: str) -> Quaternions:
 
 
 def to_euler_zyx(q: Quaternions) -> Floats:
-    """Return angles `(..., 3)` in radians, z, y, x, such that `from_euler(..., "zyx")` gives `q`."""
+    """Return angles `(..., 3)` in radians, z, y, x, such that `from_euler(..., "zyx")` gives `q`.
+
+    By sum and difference of the outer angles (Bernardes and Viollet, *Quaternion to Euler angles
+    conversion*, 2022), so that a turn of 90 degrees about y, an arm held forward, loses nothing.
+    """
     w, x, y, z = np.moveaxis(q, -1, 0)
-    yaw = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-    pitch = np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0))
-    roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    return np.stack([yaw, pitch, roll], axis=-1)
+    half_sum = np.arctan2(z + x, w - y)
+    half_difference = np.arctan2(z - x, w + y)
+    middle = 2.0 * np.arctan2(np.hypot(z - x, w + y), np.hypot(z + x, w - y)) - 0.5 * np.pi
+    return np.stack(
+        [wrap_angle(half_sum + half_difference), middle, wrap_angle(half_sum - half_difference)],
+        axis=-1,
+    )

@@ -3,7 +3,7 @@
 import numpy as np
 
 from stridewire.motion import quaternion
-from stridewire.motion.array_types import Floats, Quaternions
+from stridewire.motion.array_types import Floats, Quaternions, Vectors
 
 
 def resample_values(values: Floats, rate: float, new_rate: float) -> Floats:
@@ -13,14 +13,17 @@ def resample_values(values: Floats, rate: float, new_rate: float) -> Floats:
     tangent = np.gradient(values, axis=0)
     x = x.reshape(-1, *(1,) * (values.ndim - 1))
     h1, h2, h3 = _hermite(x)
-    return np.asarray(a + h1 * (b - a) + h2 * tangent[first] + h3 * tangent[first + 1], values.dtype)
+    curve = a + h1 * (b - a) + h2 * tangent[first] + h3 * tangent[first + 1]
+    return np.asarray(curve, values.dtype)
 
 
 def resample_rotations(q: Quaternions, rate: float, new_rate: float) -> Quaternions:
     """Resample `(T, ..., 4)` rotations with continuous angular velocity.
 
     Catmull-Rom on scaled axes relative to the frame before (Holden, *Cubic Interpolation of
-    Quaternions*); slerp would make the angular velocity jump at every frame.
+    Quaternions*), the tangent at the far end turned into the rate of the scaled axis that gives it
+    by the inverse left Jacobian of the rotation group; slerp would make the angular velocity jump
+    at every frame.
     """
     first, x = _knots(len(q), rate, new_rate)
     step = quaternion.to_scaled_axis(quaternion.multiply(q[1:], quaternion.conjugate(q[:-1])))
@@ -28,10 +31,17 @@ def resample_rotations(q: Quaternions, rate: float, new_rate: float) -> Quaterni
     tangent[0], tangent[-1] = step[0], step[-1]
     tangent[1:-1] = 0.5 * (step[1:] + step[:-1])
     h1, h2, h3 = _hermite(x.reshape(-1, *(1,) * (q.ndim - 1)))
-    turn = h1 * step[first] + h2 * tangent[first] + h3 * tangent[first + 1]
+    far = _scaled_axis_rate(step[first], tangent[first + 1])
+    turn = h1 * step[first] + h2 * tangent[first] + h3 * far
     return quaternion.unroll(
         quaternion.multiply(quaternion.from_scaled_axis(turn), q[first]).astype(q.dtype)
     )
+
+
+def _scaled_axis_rate(v: Vectors, angular_velocity: Vectors) -> Vectors:
+    """Return how fast a scaled axis `v` changes while its rotation turns, to fourth order."""
+    once = quaternion.cross(v, angular_velocity)
+    return np.asarray(angular_velocity - 0.5 * once + quaternion.cross(v, once) / 12.0)
 
 
 def _knots(frames: int, rate: float, new_rate: float) -> tuple[np.ndarray, Floats]:

@@ -1,8 +1,8 @@
 """The root: one definition for import, matching and networks.
 
-The root's position is the ground projection of Spine2, Savitzky-Golay smoothed (half a second, third
-order); its heading is the hips' forward axis on the ground, smoothed alike over a second and normalised
-(Holden, *Motion-Matching*, `generate_database`).
+The root's position is the ground projection of Spine2, Savitzky-Golay smoothed (half a second,
+third order); its heading is the hips' forward axis on the ground, smoothed alike over a second and
+normalised (Holden, *Motion-Matching*, `generate_database`).
 """
 
 import numpy as np
@@ -53,7 +53,7 @@ def extract_root(
 
 
 def savitzky_golay(values: Floats, window: int, order: int = 3) -> Floats:
-    """Smooth along the first axis by local polynomials; the ends by the outermost window's polynomial.
+    """Smooth along the first axis by local polynomials, the ends by the outermost window's.
 
     Args:
         values: `(T, C)`; a `window` longer than T is shortened to fit.
@@ -72,7 +72,7 @@ def savitzky_golay(values: Floats, window: int, order: int = 3) -> Floats:
     out[half : len(values) - half] = windows @ smooth[half]
     out[:half] = smooth[:half] @ values[:window]
     out[len(values) - half :] = smooth[half + 1 :] @ values[-window:]
-    return out
+    return out.astype(values.dtype)
 
 
 def _frames(seconds: float, frame_rate: float) -> int:

@@ -1,4 +1,4 @@
-"""Skeletons: names, parents and rest offsets of joints, and the reference that everything runs on."""
+"""Skeletons: names, parents, rest offsets of joints; the reference that everything runs on."""
 
 import hashlib
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ class Skeleton:
     parents: tuple[int, ...]
     """Index of each joint's parent, -1 for the first."""
     offsets: Vectors
-    """`(J, 3)` offsets from the parent, in its frame, metres; the first is the hips' height at rest."""
+    """`(J, 3)` offsets from the parent, in its frame, metres; the first: the hips' rest height."""
 
     def __post_init__(self) -> None:
         offsets = np.asarray(self.offsets, np.float64)
@@ -43,8 +43,8 @@ class Skeleton:
         for joint, parent in enumerate(self.parents):
             if (parent == -1) != (joint == 0) or parent >= joint:
                 raise SkeletonError(
-                    f"joint {self.names[joint]!r} has parent {parent}; expected -1 for the first joint "
-                    "alone and for others the index of an earlier joint"
+                    f"joint {self.names[joint]!r} has parent {parent}; expected -1 for the first "
+                    "joint alone and for others the index of an earlier joint"
                 )
         if not np.all(np.isfinite(offsets)):
             raise SkeletonError("an offset is not finite; expected metres")
@@ -83,7 +83,7 @@ class Skeleton:
 
     @cached_property
     def levels(self) -> tuple[tuple[Indices, Indices], ...]:
-        """Joints by depth below the hips, each with its parents: what forward kinematics loops over."""
+        """Joints by depth below the hips, with their parents: what `forward` loops over."""
         depth = [0] * len(self)
         for joint, parent in enumerate(self.parents[1:], start=1):
             depth[joint] = depth[parent] + 1

@@ -33,8 +33,8 @@ def two_bone_ik(
 ) -> Limb:
     """Turn the upper and the lower bone so that the end reaches the target.
 
-    The middle stays in its plane; only where the limb is nearly straight does `forward` say which way it
-    bends. A target out of reach is approached up to `buffer` short of full length.
+    The middle stays in its plane; only where the limb is nearly straight does `forward` say which
+    way it bends. A target out of reach is approached up to `buffer` short of full length.
 
     Args:
         start: `(..., 3)` hip or shoulder.
@@ -54,7 +54,9 @@ def two_bone_ik(
     longest = np.maximum(upper_length + lower_length - buffer, _length(end - start))
     shortest = np.abs(upper_length - lower_length) + 1e-4
     clamped = np.clip(distance, shortest, longest)
-    direction = reach / np.maximum(distance, 1e-6)
+    # a target at the start has no direction: fold the limb where it is
+    reach = np.where(distance < 1e-6, end - start, reach)
+    direction = reach / _length(reach)
 
     swing = quaternion.between(end - start, reach)
     bend = quaternion.rotate(swing, middle - start)
@@ -62,6 +64,8 @@ def two_bone_ik(
     pole = quaternion.rotate(swing, forward)
     pole = pole - direction * _dot(pole, direction)
     bend = bend + pole * np.maximum(0.0, 0.01 - _length(bend))
+    # a limb bent backwards by just so much cancels the pole
+    bend = np.where(_length(bend) < 1e-6, pole, bend)
     bend = bend / np.maximum(_length(bend), 1e-9)
 
     along = (clamped**2 + upper_length**2 - lower_length**2) / (2.0 * clamped)
