@@ -23,8 +23,8 @@ _RUN_CURVES = ((2.3, 0.5), (2.5, 0.8), (3.3, 0.3), (3.3, 0.6))
 def synthetic_clips(seed: int = 0) -> list[Clip]:
     """Draw the clips of the synthetic library at 60 frames/s on the reference skeleton.
 
-    Idle, walking and running at 0.5 to 4 m/s, curves, turns, starts, stops, changes of gait, backward
-    and sideways; tags by what the script asks for.
+    Idle, walking and running at 0.5 to 4 m/s, curves, turns, starts, stops, changes of gait,
+    backward and sideways; tags by what the script asks for.
 
     Args:
         seed: Same seed, same clips.
@@ -111,7 +111,7 @@ def _on_the_spot() -> Iterator[tuple[str, _Script]]:
                 Segment(1.0),
                 Segment(1.0, turn=1.6 * sign),
                 Segment(1.5),
-                Segment(1.2, turn=2.6 * sign),
+                Segment(1.3, turn=3.3 * sign),
                 Segment(1.5),
             ],
         )

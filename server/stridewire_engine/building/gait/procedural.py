@@ -1,9 +1,9 @@
 """The procedural style: how a body moves at each phase, written down by hand.
 
 Curves over the phase are knots joined by monotone cubics, so that nothing overshoots; their sizes
-follow speed, turning and acceleration. The shapes are the textbook ones (Perry, *Gait Analysis*: heel
-strike, foot flat, heel off at about half of the stance, toe off; pelvis highest in mid-stance when
-walking and in flight when running).
+follow speed, turning and acceleration. The shapes are the textbook ones (Perry, *Gait Analysis*):
+heel strike, foot flat, heel off at about half of the stance, toe off; pelvis highest in mid-stance
+when walking and in flight when running.
 """
 
 from dataclasses import dataclass
