@@ -7,11 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Quaternions
 from stridewire.motion.clip import Clip, Pose, TagSpan
 from stridewire.motion.skeleton import REFERENCE
+
+# the machine decides how long an example takes, and a seed which examples there are
+settings.register_profile("suite", deadline=None, derandomize=True, database=None)
+settings.load_profile("suite")
 
 ARCHIVES = ("lafan1", "cmu", "cmu-more", "exporters")
 
