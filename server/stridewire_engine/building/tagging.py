@@ -1,0 +1,166 @@
+"""Tags: named spans of a clip, from how it moves and from the words of its file's name.
+
+Every upright frame gets one of `idle`, `walk`, `jog`, `run`, `backward`, `sidestep` (with
+`sidestep-left` or `-right`); `turn` (`turn-left`, `turn-right`), `start` and `stop` lie over them.
+Frames that crawl, sit or lie get `low`. Words of the file's name that no speed tells, such as
+`dance`, hold for the whole clip.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from stridewire.motion import kinematics, quaternion
+from stridewire.motion.array_types import Flags, Floats
+from stridewire.motion.clip import Clip, Pose, TagSpan, differences
+from stridewire.motion.root import savitzky_golay
+from stridewire.motion.skeleton import REFERENCE
+
+IDLE_SPEED = 0.25
+"""Below this a character stands; metres per second."""
+JOG_SPEED = 2.0
+"""Between walking and jogging; people change gait at about 2 m/s."""
+RUN_SPEED = 3.2
+"""Between jogging and running; metres per second."""
+TURN_RATE = np.deg2rad(45.0)
+"""From this on a frame turns; radians per second."""
+
+FILE_WORDS = (
+    *("aiming", "climb", "crouch", "dance", "fall", "fight", "getup", "ground", "jump", "kick"),
+    *("obstacles", "punch", "push", "sit", "sneak", "sport", "stumble"),
+)
+"""Words of file names that become tags of the whole clip."""
+
+_SMOOTHING_S = 0.5
+_SHORTEST_S = 0.25
+_AROUND_S = 0.7
+_UNDER_WAY = 0.8
+_ASIDE_SPEED = 0.4
+_TO_SIDE = np.deg2rad(50.0)
+_TO_BACK = np.deg2rad(130.0)
+_LOW_HIPS = 0.7
+_LEANING = np.cos(np.deg2rad(60.0))
+
+
+def tag(clip: Clip, words: str) -> Clip:
+    """Return the clip with tags.
+
+    Args:
+        clip: On the reference skeleton.
+        words: Name of the file, or a description that came with it.
+    """
+    return replace(clip, tags=(*file_tags(words, len(clip)), *measured_tags(clip)))
+
+
+def file_tags(words: str, frames: int) -> tuple[TagSpan, ...]:
+    """Return tags of the whole clip for known words in a name such as `fallAndGetUp1_subject2`."""
+    text = re.sub(r"[^a-z]", "", words.lower())
+    return tuple(TagSpan(word, 0, frames) for word in FILE_WORDS if word in text)
+
+
+def measured_tags(clip: Clip) -> tuple[TagSpan, ...]:
+    """Return the tags that speed, direction, turning and posture show, in order of time."""
+    frame_rate = clip.frame_rate
+    velocity = local_velocity(clip.pose, frame_rate)
+    speed = np.hypot(velocity[:, 0], velocity[:, 1])
+    turning = yaw_rate(clip.pose, frame_rate)
+    shortest = round(_SHORTEST_S * frame_rate)
+    upright = _upright(clip.pose)
+    moving = _settle(speed >= IDLE_SPEED, shortest) & upright
+    gait = _settle_labels(_gaits(speed, np.arctan2(velocity[:, 0], velocity[:, 1])), shortest)
+    masks = {name: moving & (gait == name) for name in np.unique(gait)}
+    side = masks.get("sidestep", np.zeros(len(clip), bool))
+    masks |= {
+        "idle": upright & ~moving,
+        "low": ~upright,
+        "sidestep-left": side & (velocity[:, 0] > 0.0),
+        "sidestep-right": side & (velocity[:, 0] <= 0.0),
+        "turn": upright & _settle(np.abs(turning) >= TURN_RATE, shortest),
+    }
+    masks["turn-left"] = masks["turn"] & (turning > 0.0)
+    masks["turn-right"] = masks["turn"] & (turning <= 0.0)
+    masks |= _changes(speed, masks["idle"], round(_AROUND_S * frame_rate))
+    spans = [span for name, mask in masks.items() for span in _spans(name, mask, shortest)]
+    return tuple(sorted(spans, key=lambda span: (span.start, span.name)))
+
+
+def local_velocity(pose: Pose, frame_rate: float) -> Floats:
+    """Return `(T, 2)` smoothed velocity of the root to its left and forward; m/s."""
+    velocity = differences(pose.root_position.astype(np.float64), 1.0 / frame_rate)
+    facing = pose.root_rotation.astype(np.float64)
+    local = quaternion.rotate(quaternion.conjugate(facing), velocity)[:, [0, 2]]
+    return savitzky_golay(local, _window(frame_rate), order=1)
+
+
+def yaw_rate(pose: Pose, frame_rate: float) -> Floats:
+    """Return `(T,)` smoothed turning rate of the root; rad/s, positive to the left."""
+    yaw = np.unwrap(quaternion.to_yaw(pose.root_rotation.astype(np.float64)))
+    rate = differences(yaw, 1.0 / frame_rate)
+    return savitzky_golay(rate[:, None], _window(frame_rate), order=1)[:, 0]
+
+
+def _window(frame_rate: float) -> int:
+    return 2 * round(0.5 * _SMOOTHING_S * frame_rate) + 1
+
+
+def _gaits(speed: Floats, angle: Floats) -> np.ndarray:
+    """Name the gait of each frame as though it moved."""
+    names = np.select([speed >= RUN_SPEED, speed >= JOG_SPEED], ["run", "jog"], "walk")
+    # slower than this a turn on the spot drifts in any direction
+    away = np.where(speed < _ASIDE_SPEED, 0.0, np.abs(angle))
+    return np.select([away > _TO_BACK, away > _TO_SIDE], ["backward", "sidestep"], names)
+
+
+def _upright(pose: Pose) -> Flags:
+    """Return where the hips are high and the trunk stands."""
+    positions, _ = kinematics.forward_world(REFERENCE, pose)
+    trunk = positions[:, REFERENCE.index("Neck")] - positions[:, 0]
+    straight = trunk[:, 1] / np.linalg.norm(trunk, axis=-1)
+    height = REFERENCE.offsets[0, 1]
+    return np.asarray((positions[:, 0, 1] > _LOW_HIPS * height) & (straight > _LEANING))
+
+
+def _changes(speed: Floats, idle: Flags, around: int) -> dict[str, Flags]:
+    """Mark `around` frames on both sides of where a character sets off and comes to rest."""
+    masks = {"start": np.zeros(len(idle), bool), "stop": np.zeros(len(idle), bool)}
+    for begin, end in _runs(idle):
+        # a single step aside is neither a start nor a stop
+        if begin > 0 and speed[max(begin - 2 * around, 0) : begin].max() > _UNDER_WAY:
+            masks["stop"][max(begin - around, 0) : begin + around] = True
+        if end < len(idle) and speed[end : end + 2 * around].max() > _UNDER_WAY:
+            masks["start"][max(end - around, 0) : end + around] = True
+    return masks
+
+
+def _settle(flags: Flags, shortest: int) -> Flags:
+    """Flip runs of fewer than `shortest` frames: first the gaps, then the islands."""
+    out = flags.copy()
+    for value in (False, True):
+        for start, end in _runs(out == value):
+            if end - start < shortest and start > 0 and end < len(out):
+                out[start:end] = not value
+    return out
+
+
+def _settle_labels(labels: np.ndarray, shortest: int) -> np.ndarray:
+    """Give runs of fewer than `shortest` frames the label before them."""
+    out = labels.copy()
+    edges = np.flatnonzero(np.concatenate([[True], out[1:] != out[:-1], [True]]))
+    for start, end in pairwise(edges):
+        if end - start < shortest and start > 0:
+            out[start:end] = out[start - 1]
+    return out
+
+
+def _spans(name: str, mask: Flags, shortest: int) -> Iterator[TagSpan]:
+    for start, end in _runs(mask):
+        if end - start >= shortest or end - start == len(mask):
+            yield TagSpan(name, start, end)
+
+
+def _runs(mask: Flags) -> list[tuple[int, int]]:
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
+    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
