@@ -61,7 +61,7 @@ def _text(path: Path) -> str:
             path, "holds zero bytes; expected a text file, export as BVH (text, UTF-8)"
         )
     text = raw.decode("utf-8-sig", errors="replace")
-    return re.sub(r"\r+\n?", "\n", text)
+    return re.sub(r"\r+\n?", "\n", text) if "\r" in text else text
 
 
 def _hierarchy(path: Path, text: str) -> list[_Joint]:
@@ -124,11 +124,12 @@ def _add_joint(
         raise FormatError(path, "a JOINT outside of its parent's braces; export it again", line)
     if len(joints) == _MOST_JOINTS:
         raise FormatError(path, f"more than {_MOST_JOINTS} joints; expected one figure", line)
-    base = statement[len(keyword) :].strip() or f"joint{len(joints)}"
     taken = {joint.name for joint in joints}
-    name = next(
-        n for n in (base, *(f"{base}_{i}" for i in range(2, _MOST_JOINTS + 2))) if n not in taken
-    )
+    name = base = statement[len(keyword) :].strip() or f"joint{len(joints)}"
+    for number in range(2, len(joints) + 2):
+        if name not in taken:
+            break
+        name = f"{base}_{number}"
     joints.append(_Joint(name, open_joints[-1] if open_joints else -1))
     return len(joints) - 1
 

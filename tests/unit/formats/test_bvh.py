@@ -29,6 +29,7 @@ ROWS = ("10 20 30 0 0 90 0 0 0", "11 20 30 0 0 90 30 0 90")
 
 
 def bvh(rows: tuple[str, ...] = ROWS, frames: int = 2, time: str = "0.0333333") -> str:
+    """Return the text of a small file."""
     return "\n".join([HIERARCHY + "MOTION", f"Frames: {frames}", f"Frame Time: {time}", *rows, ""])
 
 
