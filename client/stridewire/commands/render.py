@@ -1,0 +1,58 @@
+"""`stridewire render`: a motion file as a contact sheet."""
+
+import json
+from pathlib import Path
+
+import click
+
+from stridewire._errors import StridewireError
+from stridewire.drawing import Subject, draw_contact_sheet
+from stridewire.formats.bvh import read_bvh
+
+
+@click.command()
+@click.argument("motion", metavar="IN.bvh", type=click.Path(dir_okay=False, path_type=Path))
+@click.option(
+    "--out",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="PNG to write; beside the input by default.",
+)
+@click.option("--start", default=0.0, show_default=True, help="Begin in seconds.")
+@click.option("--end", type=float, help="End in seconds; the file's by default.")
+@click.option("--title", help="Title; the file's name by default.")
+@click.option("--columns", type=click.IntRange(4, 24), default=8, show_default=True)
+@click.option("--rows", type=click.IntRange(1, 24), default=2, show_default=True)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def render(
+    motion: Path,
+    out: Path | None,
+    start: float,
+    end: float | None,
+    title: str | None,
+    columns: int,
+    rows: int,
+    as_json: bool,
+) -> None:
+    """Draw a motion file (BVH) as a contact sheet.
+
+    Shows figures at even times, the way from above, the feet and the speed over time.
+    """
+    out = out or motion.with_suffix(".png")
+    try:
+        subject = Subject.of_source(read_bvh(motion))
+        subject = subject.between(start, subject.seconds if end is None else end)
+        draw_contact_sheet(subject, out, title=title, columns=columns, rows=rows)
+    except (StridewireError, ValueError, OSError) as error:
+        raise click.ClickException(str(error)) from None
+    facts = {
+        "picture": str(out),
+        "motion": str(motion),
+        "frames": len(subject.positions),
+        "frame_rate_hz": subject.frame_rate,
+        "seconds": subject.seconds,
+        "joints": len(subject.parents),
+    }
+    if as_json:
+        click.echo(json.dumps(facts))
+    else:
+        click.echo(f"{out}: {subject.seconds:.1f} s of {motion}, {len(subject.positions)} frames")
