@@ -1,0 +1,1 @@
+"""Matching: feature schemas, features, the index and the search over it."""

@@ -1,0 +1,15 @@
+"""Stitchers: what hides a transition, one interface, many characters at once.
+
+A stitcher never changes a frame that was sent. When a character jumps, `begin` takes over what was
+shown and what comes next; from then on `apply` turns the sampled pose into the shown one. It may be
+interrupted at any frame by the next `begin`.
+"""
+
+from stridewire_engine.stitchers.cut import Cut
+from stridewire_engine.stitchers.inertialization import SpringInertialization
+from stridewire_engine.stitchers.stitcher import Motion, Stitcher, StitchState
+
+__all__ = ["STITCHERS", "Motion", "StitchState", "Stitcher"]
+
+STITCHERS: tuple[Stitcher, ...] = (SpringInertialization(), Cut())
+"""All stitchers, the default first; a character holds an index into this tuple."""

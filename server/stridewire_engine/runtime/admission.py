@@ -1,0 +1,221 @@
+"""Admission: what is allowed in messages, field by field.
+
+Field paths are those of the wire. Fields of later versions are refused by name.
+"""
+
+from collections.abc import Collection, Iterator
+
+import numpy as np
+
+from stridewire._errors import InvalidRequestError, NotImplementedYetError, Violation
+from stridewire._messages import (
+    CharacterSpec,
+    CorrectionMode,
+    GroundPose,
+    Limits,
+    Open,
+    PoseFormat,
+    Sparse,
+    Trajectory,
+)
+from stridewire.motion.array_types import Flags, Floats
+from stridewire_engine.runtime.characters import MAX_TRAJECTORY_POINTS
+from stridewire_engine.stitchers import STITCHERS
+
+_MAX_COORDINATE = 1e6
+_MAX_ID = 2**32 - 1
+_MAX_TRAJECTORY_S = 10.0
+_MIN_RATE_HZ, _MAX_RATE_HZ = 10.0, 240.0
+_MAX_CREDITS = 3600
+NOT_YET = "is not implemented yet; leave it out"
+
+STITCHER_NAMES = tuple(stitcher.name for stitcher in STITCHERS)
+
+
+def check_open(message: Open, limits: Limits) -> None:
+    """Refuse an Open that is malformed or asks for what does not exist yet.
+
+    Raises:
+        InvalidRequestError: With one violation a field.
+        NotImplementedYetError: Naming the field.
+    """
+    later = [*_open_later(message)]
+    for i, spec in enumerate(message.characters):
+        later += [f"open.characters[{i}].{name}" for name in later_fields(spec)]
+    if later:
+        raise NotImplementedYetError(
+            f"{later[0]} {NOT_YET}", [Violation(f, NOT_YET) for f in later]
+        )
+    found = [*_open_violations(message, limits)]
+    taken: set[int] = set()
+    for i, spec in enumerate(message.characters):
+        found += check_spec(f"open.characters[{i}]", spec, taken)
+        taken.add(spec.id)
+    if found:
+        raise InvalidRequestError.of(*found)
+
+
+def later_fields(spec: CharacterSpec) -> Iterator[str]:
+    """Yield the fields of a character that belong to later versions and are set."""
+    if spec.height_m:
+        yield "height_m"
+    if spec.filter:
+        yield "filter"
+    if spec.weights:
+        yield "weights"
+    if spec.responsiveness is not None:
+        yield "responsiveness"
+    if spec.rate_divider > 1:
+        yield "rate_divider"
+
+
+def check_spec(path: str, spec: CharacterSpec, taken: Collection[int]) -> Iterator[Violation]:
+    """Yield what is wrong with a character to be added.
+
+    Args:
+        path: Of the character.
+        spec: The character.
+        taken: Ids that the session has already.
+    """
+    if not 0 <= spec.id <= _MAX_ID:
+        yield Violation(f"{path}.id", f"{spec.id} is no id; allowed are 0 to {_MAX_ID}")
+    elif spec.id in taken:
+        yield Violation(f"{path}.id", f"{spec.id} is taken; ids are unique within a session")
+    yield from check_ground_pose(f"{path}.root", spec.root)
+    yield from check_stitcher(f"{path}.stitcher", spec.stitcher)
+
+
+def check_stitcher(path: str, name: str) -> Iterator[Violation]:
+    """Yield what is wrong with a stitcher's name; empty means the default."""
+    if name and name not in STITCHER_NAMES:
+        yield Violation(path, f"{name!r} is not present; present are {', '.join(STITCHER_NAMES)}")
+
+
+def check_ground_pose(path: str, root: GroundPose) -> Iterator[Violation]:
+    """Yield what is wrong with a place and heading."""
+    for axis, value in zip("xyz", root.position, strict=True):
+        if not abs(value) <= _MAX_COORDINATE:
+            yield Violation(
+                f"{path}.position.{axis}",
+                f"{value} is not a place; allowed are finite metres up to {_MAX_COORDINATE:g}",
+            )
+    if not np.isfinite(root.yaw):
+        yield Violation(f"{path}.yaw", f"{root.yaw} is no angle; allowed are finite radians")
+
+
+def check_velocity(velocity: Floats, limits: Limits) -> tuple[Flags, Iterator[Violation]]:
+    """Return which velocities `(N, 2)` are good `(N,)`, and what is wrong with the others."""
+    good = np.abs(velocity) <= limits.max_speed
+
+    def violations() -> Iterator[Violation]:
+        for row, axis in np.argwhere(~good):
+            yield Violation(
+                f"step.velocity_xz[{2 * row + axis}]",
+                f"{velocity[row, axis]} m/s; allowed are finite up to {limits.max_speed:g} in "
+                "magnitude; the previous control holds",
+            )
+
+    return np.asarray(good.all(axis=1)), violations()
+
+
+def check_facing(facing: Floats) -> tuple[Flags, Iterator[Violation]]:
+    """Return which of the headings `(N,)` are good (NaN is), and what is wrong with the rest."""
+    good = ~np.isinf(facing)
+
+    def violations() -> Iterator[Violation]:
+        for row in np.flatnonzero(~good):
+            yield Violation(
+                f"step.facing_yaw[{row}]",
+                f"{facing[row]} is no angle; allowed are finite radians, or NaN for along the "
+                "velocity; the previous control holds",
+            )
+
+    return good, violations()
+
+
+def check_sparse(path: str, sparse: Sparse, *, known: bool) -> list[Violation]:
+    """Return what is wrong with the rarer controls of one character."""
+    found = [
+        Violation(f"{path}.{name}", NOT_YET)
+        for name in ("filter", "gait", "ground")
+        if getattr(sparse, name) is not None
+    ]
+    if not known:
+        found.append(
+            Violation(
+                f"{path}.character",
+                f"{sparse.character} is not in this session; add it with an Edit",
+            )
+        )
+    if sparse.trajectory is not None:
+        found += _check_trajectory(f"{path}.trajectory", sparse.trajectory)
+    if sparse.root_correction is not None:
+        found += check_ground_pose(f"{path}.root_correction.root", sparse.root_correction.root)
+        if sparse.root_correction.mode not in tuple(CorrectionMode):
+            found.append(Violation(f"{path}.root_correction.mode", "allowed are ADJUST, TELEPORT"))
+    return found
+
+
+def check_trajectory(path: str, trajectory: Trajectory) -> None:
+    """Refuse a malformed trajectory.
+
+    Raises:
+        InvalidRequestError: With one violation a field.
+    """
+    found = [*_check_trajectory(path, trajectory)]
+    if found:
+        raise InvalidRequestError.of(*found)
+
+
+def _check_trajectory(path: str, trajectory: Trajectory) -> Iterator[Violation]:
+    times = np.asarray(trajectory.times_s)
+    count = len(times)
+    if not 1 <= count <= MAX_TRAJECTORY_POINTS:
+        yield Violation(
+            f"{path}.times_s", f"{count} points; allowed are 1 to {MAX_TRAJECTORY_POINTS}"
+        )
+        return
+    if np.shape(trajectory.positions_xz) != (count, 2):
+        yield Violation(
+            f"{path}.positions_xz",
+            f"{np.size(trajectory.positions_xz)} values for {count} times; expected {2 * count}",
+        )
+    elif not np.all(np.abs(trajectory.positions_xz) <= _MAX_COORDINATE):
+        yield Violation(f"{path}.positions_xz", "a value is not finite or above 1e6 metres")
+    inside = np.all((times >= 0.0) & (times <= _MAX_TRAJECTORY_S))
+    if not inside or np.any(np.diff(times) <= 0.0):
+        yield Violation(
+            f"{path}.times_s", f"allowed are ascending seconds from 0 to {_MAX_TRAJECTORY_S:g}"
+        )
+    facings = trajectory.facings_yaw
+    if facings is not None and (np.shape(facings) != (count,) or not np.all(np.isfinite(facings))):
+        yield Violation(f"{path}.facings_yaw", f"expected {count} finite radians, or none")
+
+
+def _open_later(message: Open) -> Iterator[str]:
+    if message.output_skeleton is not None:
+        yield "open.output_skeleton"
+    if message.format is PoseFormat.F16:
+        yield "open.format"
+    if message.resume_token:
+        yield "open.resume_token"
+
+
+def _open_violations(message: Open, limits: Limits) -> Iterator[Violation]:
+    count = len(message.characters)
+    if not 1 <= count <= limits.max_characters:
+        yield Violation(
+            "open.characters", f"{count} characters; allowed are 1 to {limits.max_characters}"
+        )
+    if not _MIN_RATE_HZ <= message.rate_hz <= _MAX_RATE_HZ:
+        yield Violation(
+            "open.rate_hz",
+            f"{message.rate_hz} a second; allowed are {_MIN_RATE_HZ:g} to {_MAX_RATE_HZ:g}",
+        )
+    if not 0 <= message.max_frames_in_flight <= _MAX_CREDITS:
+        yield Violation(
+            "open.max_frames_in_flight",
+            f"{message.max_frames_in_flight}; allowed are 0 to {_MAX_CREDITS}",
+        )
+    if not 0 <= message.seed <= _MAX_ID:
+        yield Violation("open.seed", f"{message.seed}; allowed are 0 to {_MAX_ID}")

@@ -1,0 +1,143 @@
+"""The state of all characters: one row a character, plain arrays, no objects a character."""
+
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+
+from stridewire.motion.array_types import Flags, Floats, Indices, Vectors
+
+MAX_TRAJECTORY_POINTS = 32
+"""Most points of a trajectory that a caller gives."""
+
+
+def _column(*shape: int | str, dtype: type = np.float32, fill: float = 0.0) -> Any:
+    """Describe an array `(N, *shape)`; the letter J stands for the number of joints."""
+    return field(metadata={"shape": shape, "dtype": dtype, "fill": fill})
+
+
+@dataclass
+class Characters:
+    """Arrays of N rows. World positions, angles and times are float64, since they are long sums."""
+
+    # what the caller wants
+    desired_velocity: Floats = _column(2, dtype=np.float64)
+    """x and z in the world, m/s."""
+    desired_facing: Floats = _column(dtype=np.float64, fill=np.nan)
+    """World yaw, radians; NaN means along the velocity."""
+    path: Floats = _column(MAX_TRAJECTORY_POINTS, 4, dtype=np.float64)
+    """Given trajectory: x, z, yaw, time from when it was given; the last point repeats to the
+    end."""
+    has_path: Flags = _column(dtype=np.bool_)
+    path_elapsed: Floats = _column(dtype=np.float64)
+    """Seconds since the trajectory was given."""
+    correction: Floats = _column(4, dtype=np.float64)
+    """Root correction still to be blended in: x, y, z, yaw."""
+    foot_lock: Flags = _column(dtype=np.bool_, fill=1)
+    stitcher: Indices = _column(dtype=np.int8)
+    """Index into `STITCHERS`."""
+
+    # the simulated root
+    sim_position: Floats = _column(2, dtype=np.float64)
+    """x and z."""
+    sim_velocity: Floats = _column(2, dtype=np.float64)
+    sim_acceleration: Floats = _column(2, dtype=np.float64)
+    sim_yaw: Floats = _column(dtype=np.float64)
+    sim_yaw_velocity: Floats = _column(dtype=np.float64)
+    goal_yaw: Floats = _column(dtype=np.float64)
+    """Where the simulated root turns to."""
+
+    # the character root
+    root_position: Vectors = _column(3, dtype=np.float64)
+    root_yaw: Floats = _column(dtype=np.float64)
+    root_offset: Floats = _column(3)
+    """What is left of the root velocity before the last jump: x, z in the root's frame, yaw
+    rate."""
+
+    # playback and search
+    clip: Indices = _column(dtype=np.int32, fill=-1)
+    """Index of the clip; -1 before the first search."""
+    clip_time: Floats = _column(dtype=np.float64)
+    """Seconds within the clip."""
+    since_jump: Floats = _column(dtype=np.float64)
+    until_search: Floats = _column(dtype=np.float64)
+    searched_velocity: Floats = _column(2, dtype=np.float64)
+    """Desired velocity at the last search."""
+    searched_yaw: Floats = _column(dtype=np.float64)
+    """Goal yaw at the last search."""
+    force_search: Flags = _column(dtype=np.bool_)
+
+    # the stitcher
+    offset_hips: Vectors = _column(3)
+    offset_hips_velocity: Vectors = _column(3)
+    offset_rotations: Vectors = _column("J", 3)
+    offset_angular_velocity: Vectors = _column("J", 3)
+
+    # the feet: left and right
+    planted: Flags = _column(2, dtype=np.bool_)
+    """The clip's contact in the last frame."""
+    locked: Flags = _column(2, dtype=np.bool_)
+    lock_point: Vectors = _column(2, 3, dtype=np.float64)
+    """World position of a locked toe."""
+    toe: Vectors = _column(2, 3, dtype=np.float64)
+    """World position of the toes before locking, in the last frame."""
+    toe_offset: Vectors = _column(2, 3)
+    toe_offset_velocity: Vectors = _column(2, 3)
+
+    # what was shown last
+    shown_world: Vectors = _column(3, 3, dtype=np.float64)
+    """Left ankle, right ankle and hips in the world."""
+    shown_ankle: Vectors = _column(2, 3)
+    """Ankles in the root's frame."""
+    shown_ankle_velocity: Vectors = _column(2, 3)
+    """World velocity of the ankles in the root's frame."""
+    shown_hips_velocity: Vectors = _column(3)
+    """World velocity of the hips in the root's frame."""
+    tag_bits: Indices = _column(dtype=np.uint64)
+    contacts: Flags = _column(4, dtype=np.bool_)
+    time: Floats = _column(dtype=np.float64)
+    """Seconds since the character was added."""
+
+    @classmethod
+    def allocate(cls, rows: int, joints: int) -> "Characters":
+        """Return fresh rows."""
+        arrays = {}
+        for column in fields(cls):
+            shape = [joints if n == "J" else n for n in column.metadata["shape"]]
+            arrays[column.name] = np.full(
+                (rows, *shape), column.metadata["fill"], column.metadata["dtype"]
+            )
+        return cls(**arrays)
+
+    def __len__(self) -> int:
+        return len(self.clip)
+
+    @property
+    def joints(self) -> int:
+        """Number of joints."""
+        return int(self.offset_rotations.shape[1])
+
+    def take(self, rows: slice | Indices) -> "Characters":
+        """Return some rows: views for a slice, copies for indices."""
+        return Characters(**{name: array[rows] for name, array in vars(self).items()})
+
+    def put(self, rows: slice | Indices, part: "Characters") -> None:
+        """Write rows back."""
+        for name, array in vars(self).items():
+            array[rows] = getattr(part, name)
+
+    def append(self, more: "Characters") -> "Characters":
+        """Return these rows and then others."""
+        return Characters(
+            **{
+                name: np.concatenate([array, getattr(more, name)])
+                for name, array in vars(self).items()
+            }
+        )
+
+
+def contiguous(rows: Indices) -> slice | Indices:
+    """Return a slice for consecutive rows, so that no copy is made; else the rows."""
+    if len(rows) and rows[-1] - rows[0] + 1 == len(rows) and np.all(np.diff(rows) == 1):
+        return slice(int(rows[0]), int(rows[-1]) + 1)
+    return rows

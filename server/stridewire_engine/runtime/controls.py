@@ -1,0 +1,133 @@
+"""Controls: what a step asks of a session's characters, written into their rows.
+
+Whatever is wrong is left out, so that the previous control holds, and told.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from stridewire._errors import Violation
+from stridewire._messages import (
+    CorrectionMode,
+    FrameFlag,
+    Limits,
+    RootCorrection,
+    Sparse,
+    Step,
+    Trajectory,
+)
+from stridewire.motion.array_types import Flags, Floats, Indices
+from stridewire.motion.springs import wrap_angle
+from stridewire_engine.runtime import admission
+from stridewire_engine.runtime.characters import Characters
+from stridewire_engine.runtime.roster import Roster
+
+
+def apply_step(
+    roster: Roster, state: Characters, step: Step, limits: Limits
+) -> Iterator[Violation]:
+    """Apply a step's controls and yield what was wrong with them."""
+    places: Indices = np.arange(len(roster))
+    if step.characters is not None and len(step.characters):
+        places = roster.places(step.characters)
+        for unknown in np.flatnonzero(places < 0):
+            yield Violation(
+                f"step.characters[{unknown}]", f"{step.characters[unknown]} is not in this session"
+            )
+    velocity, wrong = _shaped(roster, "step.velocity_xz", step.velocity_xz, (len(places), 2))
+    yield from wrong
+    facing, wrong = _shaped(roster, "step.facing_yaw", step.facing_yaw, (len(places),))
+    yield from wrong
+    good = places >= 0
+    if velocity is not None:
+        fine, complaints = admission.check_velocity(velocity, limits)
+        yield from complaints
+        good = _hold(roster, places, good, fine)
+    if facing is not None:
+        fine, complaints = admission.check_facing(facing)
+        yield from complaints
+        good = _hold(roster, places, good, fine)
+    rows = roster.rows[places[good]]
+    if velocity is not None:
+        state.desired_velocity[rows] = velocity[good]
+        state.has_path[rows] = False
+    if facing is not None:
+        state.desired_facing[rows] = facing[good]
+    for i, sparse in enumerate(step.sparse):
+        yield from _apply_sparse(roster, state, f"step.sparse[{i}]", sparse)
+
+
+def place(state: Characters, row: int, position: tuple[float, float, float], yaw: float) -> None:
+    """Put a character somewhere, without a history: it begins there with its next tick."""
+    kept = {
+        name: getattr(state, name)[row].copy()
+        for name in ("desired_velocity", "desired_facing", "foot_lock", "stitcher")
+    }
+    state.put(slice(row, row + 1), Characters.allocate(1, state.joints))
+    for name, value in kept.items():
+        getattr(state, name)[row] = value
+    state.root_position[row] = position
+    state.sim_position[row] = position[0], position[2]
+    for angle in (state.root_yaw, state.sim_yaw, state.goal_yaw):
+        angle[row] = yaw
+
+
+def follow(state: Characters, row: int, trajectory: Trajectory) -> None:
+    """Give a character a trajectory; the last point repeats to the end of its array."""
+    positions = np.asarray(trajectory.positions_xz, np.float64)
+    count = len(positions)
+    path = np.empty((count, 4))
+    path[:, :2] = positions
+    path[:, 2] = np.nan if trajectory.facings_yaw is None else trajectory.facings_yaw
+    path[:, 3] = trajectory.times_s
+    state.path[row, :count] = path
+    state.path[row, count:] = path[-1]
+    state.path_elapsed[row] = 0.0
+    state.has_path[row] = True
+
+
+def _shaped(
+    roster: Roster, path: str, array: Floats | None, shape: tuple[int, ...]
+) -> tuple[Floats | None, list[Violation]]:
+    if array is None:
+        return None, []
+    array = np.asarray(array, np.float64)
+    if array.shape == shape:
+        return array, []
+    roster.flag(slice(None), FrameFlag.HELD)
+    expected = f"{array.size} values for {shape[0]} characters; expected {int(np.prod(shape))}"
+    return None, [Violation(path, f"{expected}; the previous controls hold")]
+
+
+def _hold(roster: Roster, places: Indices, good: Flags, fine: Flags) -> Flags:
+    roster.flag(places[good & ~fine], FrameFlag.HELD)
+    return good & fine
+
+
+def _apply_sparse(roster: Roster, state: Characters, path: str, sparse: Sparse) -> list[Violation]:
+    at = roster.place(sparse.character)
+    wrong = admission.check_sparse(path, sparse, known=at >= 0)
+    if wrong:
+        if at >= 0:
+            roster.flag(at, FrameFlag.HELD)
+        return wrong
+    row = int(roster.rows[at])
+    if sparse.trajectory is not None:
+        follow(state, row, sparse.trajectory)
+    if sparse.root_correction is not None:
+        if sparse.root_correction.mode is CorrectionMode.TELEPORT:
+            roster.flag(at, FrameFlag.TELEPORTED)
+        _correct(state, row, sparse.root_correction)
+    if sparse.force_search:
+        state.force_search[row] = True
+    return []
+
+
+def _correct(state: Characters, row: int, correction: RootCorrection) -> None:
+    root = correction.root
+    if correction.mode is CorrectionMode.TELEPORT:
+        place(state, row, root.position, root.yaw)
+    else:
+        state.correction[row, :3] = root.position - state.root_position[row]
+        state.correction[row, 3] = wrap_angle(np.asarray(root.yaw - state.root_yaw[row]))

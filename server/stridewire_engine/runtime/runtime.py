@@ -1,0 +1,195 @@
+"""The runtime: all sessions over all open libraries, reached by messages of arrays.
+
+One thread drives a runtime; it has no locks. This is the boundary that could move to a process of
+its own.
+"""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import count
+
+import numpy as np
+
+from stridewire import __version__
+from stridewire._errors import NotFoundError
+from stridewire._messages import (
+    Edit,
+    Frame,
+    Limits,
+    Open,
+    Opened,
+    SearchQuery,
+    SearchResult,
+    ServerInfo,
+    Settings,
+    Step,
+    StreamError,
+)
+from stridewire.motion.array_types import Floats
+from stridewire_engine.library import Library, LibraryError
+from stridewire_engine.runtime import admission, queries
+from stridewire_engine.runtime.crowd import Crowd
+from stridewire_engine.runtime.session import Session
+from stridewire_engine.runtime.settings import TickSettings
+
+
+@dataclass
+class _Due:
+    session: Session
+    dt: Floats
+    error: StreamError | None
+
+
+class Runtime:
+    """Opens sessions, advances them together, answers queries."""
+
+    def __init__(
+        self,
+        libraries: Sequence[Library],
+        *,
+        limits: Limits | None = None,
+        settings: TickSettings | None = None,
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        """Index the libraries.
+
+        Args:
+            libraries: The first is the default; names must differ.
+            limits: Of messages.
+            settings: Of the tick.
+            clock: Seconds; only for the timings that are reported.
+
+        Raises:
+            LibraryError: If there is none, two share a name, or one cannot be searched.
+        """
+        if not libraries:
+            raise LibraryError("no library was given; a runtime needs at least one")
+        self._limits = limits or Limits()
+        self._settings = settings or TickSettings()
+        self._crowds: dict[str, Crowd] = {}
+        for library in libraries:
+            if library.name in self._crowds:
+                raise LibraryError(
+                    f"two libraries are called {library.name!r}; give one another name: NAME=FOLDER"
+                )
+            self._crowds[library.name] = Crowd(
+                library, self._settings, self._limits.max_speed, clock
+            )
+        self._sessions: dict[str, Session] = {}
+        self._numbers = count(1)
+
+    @property
+    def libraries(self) -> dict[str, Library]:
+        """The open libraries by name, the default first."""
+        return {name: crowd.library for name, crowd in self._crowds.items()}
+
+    @property
+    def limits(self) -> Limits:
+        """Limits that hold for every session."""
+        return self._limits
+
+    def library(self, name: str) -> Library:
+        """Return an open library; an empty name means the default.
+
+        Raises:
+            NotFoundError: If it is not open here.
+        """
+        return self._crowd(name).library
+
+    def open(self, message: Open) -> Session:
+        """Open a session.
+
+        Raises:
+            InvalidRequestError: If a field is not allowed.
+            NotFoundError: If the library is not open here.
+            NotImplementedYetError: If a field of a later version is set.
+        """
+        admission.check_open(message, self._limits)
+        crowd = self._crowd(message.library)
+        settings = Settings(
+            message.pacing,
+            message.rate_hz,
+            message.max_frames_in_flight,
+            message.format,
+            message.detail,
+            message.seed,
+            admission.STITCHER_NAMES[0],
+        )
+        opened = Opened(
+            session=f"s{next(self._numbers)}",
+            skeleton=crowd.library.skeleton,
+            library=crowd.library.info(),
+            server_version=__version__,
+            settings=settings,
+            limits=self._limits,
+        )
+        session = Session(crowd, opened, self._limits, self._settings)
+        session.add(message.characters)
+        self._sessions[session.id] = session
+        return session
+
+    def control(self, session: Session, step: Step) -> StreamError | None:
+        """Apply a step's controls without advancing; for sessions that the server paces."""
+        return session.control(step)
+
+    def edit(self, session: Session, edit: Edit) -> StreamError | None:
+        """Add, remove and change characters."""
+        return session.edit(edit)
+
+    def close(self, session: Session) -> None:
+        """Free what a session holds; twice is harmless."""
+        if self._sessions.pop(session.id, None) is not None:
+            session.remove_all()
+
+    def advance(
+        self, due: Sequence[tuple[Session, Step]]
+    ) -> list[tuple[Frame, StreamError | None]]:
+        """Advance sessions by one step each, all of one library in one tick.
+
+        Args:
+            due: Sessions, each at most once, and their steps.
+
+        Returns:
+            A frame, and what was wrong with the step, for each session in order.
+        """
+        begun = [_Due(session, *session.begin_tick(step)) for session, step in due]
+        frames: dict[str, Frame] = {}
+        for crowd in {id(d.session.crowd): d.session.crowd for d in begun}.values():
+            mine = [d for d in begun if d.session.crowd is crowd]
+            block = crowd.step([d.session.rows for d in mine], [d.dt for d in mine])
+            stops = np.cumsum([len(d.session) for d in mine]).tolist()
+            for d, stop in zip(mine, stops, strict=True):
+                rows = slice(stop - len(d.session), stop)
+                frames[d.session.id] = d.session.end_tick(block, rows)
+        return [(frames[d.session.id], d.error) for d in begun]
+
+    def search(self, query: SearchQuery) -> SearchResult:
+        """Search the motion database.
+
+        Raises:
+            StridewireError: As `queries.search`.
+        """
+        matcher = self._crowd(query.library).matcher
+        return queries.search(matcher, query, self._limits, self._settings)
+
+    def info(self) -> ServerInfo:
+        """Tell versions, libraries, limits and load."""
+        return ServerInfo(
+            version=__version__,
+            libraries=tuple(library.info() for library in self.libraries.values()),
+            models={},
+            limits=self._limits,
+            stitchers=admission.STITCHER_NAMES,
+            sessions=len(self._sessions),
+            characters=sum(len(crowd) for crowd in self._crowds.values()),
+        )
+
+    def _crowd(self, name: str) -> Crowd:
+        if not name:
+            return next(iter(self._crowds.values()))
+        if name not in self._crowds:
+            raise NotFoundError(
+                f"no library {name!r} is open here; open are {', '.join(self._crowds)}"
+            )
+        return self._crowds[name]

@@ -1,0 +1,87 @@
+"""Sampling: what the library holds between its frames, for N characters at once."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from stridewire.motion import quaternion
+from stridewire.motion.array_types import Floats, Indices, Quaternions, Vectors
+from stridewire_engine.library import Library
+from stridewire_engine.stitchers import Motion
+
+
+class Moments(NamedTuple):
+    """Where N characters are in the library: between a row and the next one."""
+
+    rows: Indices
+    """`(N,)` row at or before the time."""
+    weight: Floats
+    """`(N,)` float32 share of the next row."""
+
+    @property
+    def nearest(self) -> Indices:
+        """`(N,)` the nearer of both rows."""
+        return self.rows + (self.weight >= 0.5)
+
+
+def moments(library: Library, clip: Indices, time: Floats) -> Moments:
+    """Return where clips `(N,)` are at `time` `(N,)` seconds, clamped to the clips."""
+    last = library.clip_frames[clip] - 1
+    at = np.clip(time * library.frame_rate, 0.0, last)
+    frame = np.minimum(at.astype(np.int64), np.maximum(last - 1, 0))
+    return Moments(library.clip_starts[clip] + frame, (at - frame).astype(np.float32))
+
+
+def sample_pose(library: Library, at: Moments) -> tuple[Vectors, Quaternions]:
+    """Return hips `(N, 3)` relative to the root and local rotations `(N, J, 4)`."""
+    weight = at.weight[:, None]
+    a, b = library.hips[at.rows], library.hips[at.rows + 1]
+    rotations = quaternion.nlerp(library.rotations[at.rows], library.rotations[at.rows + 1], weight)
+    return a + weight * (b - a), rotations
+
+
+def sample_root(library: Library, at: Moments) -> tuple[Vectors, Floats]:
+    """Return root positions `(N, 3)` and yaws `(N,)` in the clips' own spaces, float64."""
+    weight = at.weight.astype(np.float64)
+    a, b = library.root_position[at.rows], library.root_position[at.rows + 1]
+    yaw_a, yaw_b = library.root_yaw[at.rows], library.root_yaw[at.rows + 1]
+    position = a + weight[:, None] * (b.astype(np.float64) - a)
+    return position, yaw_a + weight * (yaw_b.astype(np.float64) - yaw_a)
+
+
+def sample_motion(library: Library, at: Moments) -> Motion:
+    """Return poses and their rates of change, those of the interpolant between both rows."""
+    hips, rotations = sample_pose(library, at)
+    rate = np.float32(library.frame_rate)
+    step = quaternion.multiply(
+        library.rotations[at.rows + 1], quaternion.conjugate(library.rotations[at.rows])
+    )
+    return Motion(
+        hips,
+        rotations,
+        (library.hips[at.rows + 1] - library.hips[at.rows]) * rate,
+        quaternion.to_scaled_axis(step) * rate,
+    )
+
+
+def root_delta(library: Library, before: Moments, after: Moments) -> Floats:
+    """Return root motion `(N, 3)`: x, z in the root's frame before, yaw; float64."""
+    position, yaw = sample_root(library, before)
+    position_after, yaw_after = sample_root(library, after)
+    way = position_after - position
+    sine, cosine = np.sin(yaw), np.cos(yaw)
+    return np.stack(
+        [
+            way[:, 0] * cosine - way[:, 2] * sine,
+            way[:, 0] * sine + way[:, 2] * cosine,
+            yaw_after - yaw,
+        ],
+        axis=-1,
+    )
+
+
+def root_velocity(library: Library, at: Moments) -> Floats:
+    """Return `(N, 3)`: x, z in m/s in the root's frame, yaw rate in rad/s; float32."""
+    start = Moments(at.rows, np.zeros_like(at.weight))
+    end = Moments(at.rows, np.ones_like(at.weight))
+    return (root_delta(library, start, end) * library.frame_rate).astype(np.float32)

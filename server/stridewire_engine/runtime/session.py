@@ -1,0 +1,201 @@
+"""A session: one caller's characters, and the frames made of the tick's blocks."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import islice
+
+import numpy as np
+
+from stridewire._errors import Violation
+from stridewire._messages import (
+    CharacterSpec,
+    CharacterUpdate,
+    Detail,
+    Edit,
+    Frame,
+    FrameFlag,
+    Limits,
+    Opened,
+    Step,
+    StreamError,
+)
+from stridewire.motion.array_types import Floats, Indices
+from stridewire.motion.contacts import to_mask
+from stridewire_engine.runtime import admission, controls
+from stridewire_engine.runtime.characters import Characters
+from stridewire_engine.runtime.crowd import Crowd
+from stridewire_engine.runtime.events import TickEvents
+from stridewire_engine.runtime.roster import Roster
+from stridewire_engine.runtime.settings import TickSettings
+from stridewire_engine.runtime.tick import Block
+
+_MAX_VIOLATIONS = 100
+_UPDATABLE = ("stitcher", "foot_lock")
+_UPDATABLE_LATER = ("filter", "weights", "responsiveness", "rate_divider")
+
+
+class Session:
+    """One caller's characters. Made by `Runtime.open`; driven by one thread."""
+
+    def __init__(
+        self, crowd: Crowd, opened: Opened, limits: Limits, settings: TickSettings
+    ) -> None:
+        self.opened = opened
+        self.crowd = crowd
+        self._roster = Roster()
+        self._limits = limits
+        self._interval = settings.search_interval
+        self._rng = np.random.default_rng(opened.settings.seed)
+        self._frame = 0
+        self._time = 0.0
+        self._applied = Step(step=0, client_time_s=0.0)
+
+    def __len__(self) -> int:
+        """Return the number of characters."""
+        return len(self._roster)
+
+    @property
+    def id(self) -> str:
+        """Name of the session."""
+        return self.opened.session
+
+    @property
+    def rows(self) -> Indices:
+        """`(N,)` rows of the crowd."""
+        return self._roster.rows
+
+    def add(self, specs: Sequence[CharacterSpec]) -> None:
+        """Add characters that were checked."""
+        rows = self.crowd.add(len(specs))
+        state = self.crowd.state
+        for row, spec in zip(rows, specs, strict=True):
+            controls.place(state, int(row), spec.root.position, spec.root.yaw)
+            _update(state, int(row), spec, _UPDATABLE)
+        # characters that search at different times share the work evenly among the ticks
+        state.until_search[rows] = self._rng.random(len(specs)) * self._interval
+        self._roster.add(np.array([spec.id for spec in specs]), rows)
+
+    def remove_all(self) -> None:
+        """Give all rows back."""
+        self.crowd.remove(self.rows)
+        self._roster = Roster()
+
+    def edit(self, edit: Edit) -> StreamError | None:
+        """Remove, add and update characters; what is wrong is left out and told."""
+        return _error(0, self._edit(edit))
+
+    def control(self, step: Step) -> StreamError | None:
+        """Apply a step's controls without advancing; what is wrong is left out, held and told."""
+        self._applied = step
+        return _error(
+            step.step, controls.apply_step(self._roster, self.crowd.state, step, self._limits)
+        )
+
+    def held_step(self, dt_s: float) -> Step:
+        """Return a step that advances under the controls as they are, for a clock that paces."""
+        nothing = Step(dt_s=dt_s)
+        return replace(nothing, step=self._applied.step, client_time_s=self._applied.client_time_s)
+
+    def begin_tick(self, step: Step) -> tuple[Floats, StreamError | None]:
+        """Apply a step's controls and return how far to go, `(N,)` seconds, and what was wrong."""
+        dt, wrong = self._check_dt(step.dt_s)
+        self._applied = step
+        wrong += controls.apply_step(self._roster, self.crowd.state, step, self._limits)
+        self._time += dt
+        return np.full(len(self), dt), _error(step.step, wrong)
+
+    def end_tick(self, block: Block, rows: slice) -> Frame:
+        """Make the frame out of the session's rows of the tick's block."""
+        self._frame += 1
+        detail = self.opened.settings.detail
+        ids = self._roster.ids
+        schema = self.crowd.matcher.schema
+        return Frame(
+            frame=self._frame,
+            applied_step=self._applied.step,
+            time_s=self._time,
+            client_time_s=self._applied.client_time_s,
+            characters=ids,
+            root=block.root[rows],
+            root_delta=block.root_delta[rows],
+            hips=block.hips[rows],
+            rotations=block.rotations[rows],
+            contacts=to_mask(block.contacts[rows]),
+            foot_targets=block.foot_targets[rows],
+            flags=self._roster.take_flags(),
+            simulated_root=block.simulated_root[rows] if detail is Detail.COSTS else None,
+            events=TickEvents(block, rows, ids, self._frame, detail, self.crowd.library, schema),
+            timings_ms=block.timings_ms,
+        )
+
+    def _check_dt(self, dt: float) -> tuple[float, list[Violation]]:
+        if not dt >= 0.0:
+            self._roster.flag(slice(None), FrameFlag.HELD)
+            allowed = f"allowed are 0 to {self._limits.max_dt_s:g} seconds; no time passes"
+            return 0.0, [Violation("step.dt_s", f"{dt}; {allowed}")]
+        if dt > self._limits.max_dt_s:
+            self._roster.flag(slice(None), FrameFlag.DT_CLAMPED)
+            return self._limits.max_dt_s, []
+        return dt, []
+
+    def _edit(self, edit: Edit) -> Iterator[Violation]:
+        for i, character in enumerate(edit.remove):
+            yield from self._remove(f"edit.remove[{i}]", character)
+        for i, spec in enumerate(edit.add):
+            yield from self._add_one(f"edit.add[{i}]", spec)
+        for i, update in enumerate(edit.update):
+            yield from self._update_one(f"edit.update[{i}]", update)
+
+    def _remove(self, path: str, character: int) -> Iterator[Violation]:
+        at = self._roster.place(character)
+        if at < 0:
+            yield Violation(path, f"{character} is not in this session")
+        elif len(self) == 1:
+            yield Violation(path, f"{character} is the last character; close the session instead")
+        else:
+            self.crowd.remove(self.rows[at : at + 1])
+            self._roster.remove(at)
+
+    def _add_one(self, path: str, spec: CharacterSpec) -> Iterator[Violation]:
+        later = admission.later_fields(spec)
+        wrong = [Violation(f"{path}.{name}", admission.NOT_YET) for name in later]
+        wrong += admission.check_spec(path, spec, self._roster.ids.tolist())
+        most = self._limits.max_characters
+        if len(self) >= most:
+            wrong.append(Violation(path, f"a session holds at most {most} characters"))
+        yield from wrong
+        if not wrong:
+            self.add([spec])
+
+    def _update_one(self, path: str, update: CharacterUpdate) -> Iterator[Violation]:
+        at = self._roster.place(update.spec.id)
+        allowed = f"allowed are {', '.join(_UPDATABLE)}"
+        wrong = []
+        if at < 0:
+            wrong.append(Violation(f"{path}.spec.id", f"{update.spec.id} is not in this session"))
+        if not update.mask:
+            wrong.append(Violation(f"{path}.mask", f"is empty; {allowed}"))
+        for name in update.mask:
+            if name in _UPDATABLE_LATER:
+                wrong.append(Violation(f"{path}.spec.{name}", admission.NOT_YET))
+            elif name not in _UPDATABLE:
+                wrong.append(Violation(f"{path}.mask", f"{name!r} cannot change; {allowed}"))
+        if "stitcher" in update.mask:
+            wrong += admission.check_stitcher(f"{path}.spec.stitcher", update.spec.stitcher)
+        yield from wrong
+        if not wrong:
+            _update(self.crowd.state, int(self.rows[at]), update.spec, update.mask)
+
+
+def _update(state: Characters, row: int, spec: CharacterSpec, names: Iterable[str]) -> None:
+    if "stitcher" in names:
+        chosen = spec.stitcher or admission.STITCHER_NAMES[0]
+        state.stitcher[row] = admission.STITCHER_NAMES.index(chosen)
+    if "foot_lock" in names:
+        state.foot_lock[row] = spec.foot_lock
+
+
+def _error(step: int, violations: Iterable[Violation]) -> StreamError | None:
+    every = iter(violations)
+    listed = tuple(islice(every, _MAX_VIOLATIONS))
+    return StreamError(step, listed, sum(1 for _ in every)) if listed else None

@@ -1,0 +1,45 @@
+"""Settings of the tick; the defaults are what ships."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class TickSettings:
+    """Half-lives in seconds unless said otherwise; a spring's is not a true one, see `springs`."""
+
+    velocity_halflife: float = 0.27
+    """Spring of the simulated root's velocity."""
+    facing_halflife: float = 0.27
+    """Spring of the simulated root's heading."""
+    search_interval: float = 0.15
+    """Seconds between searches of a character."""
+    shortest_interval: float = 0.05
+    """Seconds between searches that jumps of the control force."""
+    control_jump: float = 0.5
+    """Change of the desired velocity since the last search, m/s, that forces one."""
+    facing_jump: float = 0.5
+    """Change of the goal heading since the last search, radians, that forces one."""
+    continuing_bias: float = 0.25
+    """A jump must be better than staying by so many of the library's typical costs."""
+    clip_end_margin: float = 0.1
+    """A clip is left at the latest so many seconds before its end."""
+    root_halflife: float = 0.12
+    """Damper of the root's velocity difference at a jump."""
+    adjust_position_halflife: float = 0.2
+    """Damper that pulls the character root to the simulated one."""
+    adjust_yaw_halflife: float = 0.2
+    """Damper that turns the character root to the simulated one."""
+    adjust_share: float = 0.15
+    """The pull is at most this share of the root's own motion, so that it hides in it."""
+    adjust_turn_per_metre: float = 0.25
+    """So many radians more may be turned for every metre walked."""
+    leash: float = 0.35
+    """The simulated root is at most so many metres ahead of the character's."""
+    yaw_leash: float = 1.2
+    """The simulated heading is at most so many radians off the character's."""
+    correction_halflife: float = 0.1
+    """Damper of root corrections with ADJUST."""
+    foot_halflife: float = 0.1
+    """Spring of a foot that locks or unlocks."""
+    unlock_distance: float = 0.2
+    """A locked foot is let go when the motion is so many metres away from it."""

@@ -1,0 +1,221 @@
+"""The tick: one step of all characters that are due, in the order of the design.
+
+Intent, search, playback, stitch, root, feet. Arrays in, arrays out; no loop over characters.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from stridewire._messages import TransitionReason
+from stridewire.motion import quaternion
+from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
+from stridewire_engine.matching.search import Matcher
+from stridewire_engine.runtime import choice, feet, intent, root, sampling
+from stridewire_engine.runtime.characters import Characters
+from stridewire_engine.runtime.choice import Jumps
+from stridewire_engine.runtime.settings import TickSettings
+from stridewire_engine.stitchers import STITCHERS, StitchState
+
+
+@dataclass(frozen=True)
+class Block:
+    """What a tick made, for N characters in the order of its rows."""
+
+    root: Floats
+    """`(N, 7)` float32."""
+    root_delta: Floats
+    """`(N, 4)` float32."""
+    hips: Vectors
+    """`(N, 3)` float32."""
+    rotations: Quaternions
+    """`(N, J, 4)` float32."""
+    contacts: Flags
+    """`(N, 4)`."""
+    contacts_before: Flags
+    """`(N, 4)`."""
+    foot_targets: Vectors
+    """`(N, 2, 3)` float32, NaN where not locked."""
+    simulated_root: Floats
+    """`(N, 4)` float32."""
+    tags_entered: Indices
+    """`(N,)` uint64 bits of the library's tags."""
+    jumps: Jumps | None
+    """Who jumped; None if nobody searched."""
+    timings_ms: dict[str, float]
+
+
+class Tick:
+    """Steps characters over one library."""
+
+    def __init__(
+        self,
+        matcher: Matcher,
+        settings: TickSettings,
+        max_speed: float,
+        clock: Callable[[], float],
+    ) -> None:
+        """Prepare what does not change from tick to tick.
+
+        Args:
+            matcher: Of the library.
+            settings: Half-lives, biases, intervals.
+            max_speed: Limit of velocity components, m/s.
+            clock: Seconds; only for the timings that are reported.
+        """
+        self._matcher = matcher
+        self._settings = settings
+        self._max_speed = max_speed
+        self._clock = clock
+        self._legs = feet.Legs.of(matcher.library.skeleton)
+        self._times = np.array(matcher.schema.trajectory_times)
+
+    def step(self, state: Characters, dt: Floats) -> Block:
+        """Advance all rows of `state` in place by `dt` `(N,)` seconds and return what is shown."""
+        timings = _Timings(self._clock)
+        settings, library = self._settings, self._matcher.library
+        state.time += dt
+        goal = intent.set_goals(state, self._max_speed)
+        prediction = intent.predict(state, goal, self._times, settings)
+        timings.note("intent")
+        reason = choice.due(state, self._matcher, dt, settings)
+        jumps = None
+        if reason.any():
+            jumps = choice.choose(state, self._matcher, prediction, reason, settings)
+        timings.note("search")
+        intent.advance(state, goal, dt, settings)
+        if jumps is not None and len(jumps.characters):
+            self._jump(state, jumps)
+        before = sampling.moments(library, state.clip, state.clip_time)
+        state.clip_time += dt
+        state.since_jump += dt
+        after = sampling.moments(library, state.clip, state.clip_time)
+        hips, rotations = sampling.sample_pose(library, after)
+        motion = sampling.root_delta(library, before, after)
+        contacts = library.contacts[after.nearest]
+        timings.note("playback")
+        hips, rotations = _stitch(state, hips, rotations, dt)
+        timings.note("stitch")
+        delta = root.advance(state, motion, dt, settings)
+        timings.note("root")
+        rotations = feet.plant(state, self._legs, hips, rotations, contacts, dt, settings)
+        timings.note("feet")
+        return self._block(state, delta, hips, rotations, contacts, after, jumps, timings)
+
+    def _jump(self, state: Characters, jumps: Jumps) -> None:
+        """Hand the jumping characters over to their stitchers and set them to their new moments."""
+        library = self._matcher.library
+        rows = state.take(jumps.characters)
+        old = sampling.moments(library, np.maximum(jumps.from_clip, 0), jumps.from_time)
+        new = sampling.moments(library, jumps.to_clip, jumps.to_time)
+        rows.root_offset += sampling.root_velocity(library, old)
+        rows.root_offset -= sampling.root_velocity(library, new)
+        source, target = sampling.sample_motion(library, old), sampling.sample_motion(library, new)
+        offsets = _stitch_state(rows)
+        for index, stitcher in enumerate(STITCHERS):
+            mine = np.flatnonzero(rows.stitcher == index)
+            if len(mine):
+                part = offsets.take(mine)
+                stitcher.begin(part, source.take(mine), target.take(mine))
+                offsets.put(mine, part)
+            if not stitcher.keeps_root_velocity:
+                rows.root_offset[mine] = 0.0
+        _clear_offsets(rows, jumps.reason == TransitionReason.START)
+        rows.clip[...], rows.clip_time[...] = jumps.to_clip, jumps.to_time
+        rows.since_jump[...] = 0.0
+        state.put(jumps.characters, rows)
+
+    def _block(
+        self,
+        state: Characters,
+        delta: Floats,
+        hips: Vectors,
+        rotations: Quaternions,
+        contacts: Flags,
+        after: sampling.Moments,
+        jumps: Jumps | None,
+        timings: "_Timings",
+    ) -> Block:
+        bits = self._matcher.library.tag_bits[after.nearest]
+        entered = bits & ~state.tag_bits
+        before = state.contacts.copy()
+        state.tag_bits[...] = bits
+        state.contacts[...] = contacts
+        turn = quaternion.from_yaw(state.root_yaw)
+        targets = np.where(state.locked[..., None], state.lock_point, np.nan)
+        simulated = np.concatenate(
+            [
+                state.sim_position[:, :1],
+                state.root_position[:, 1:2],
+                state.sim_position[:, 1:],
+                state.sim_yaw[:, None],
+            ],
+            axis=1,
+        )
+        return Block(
+            np.concatenate([state.root_position, turn], axis=1).astype(np.float32),
+            delta.astype(np.float32),
+            hips,
+            rotations,
+            contacts,
+            before,
+            targets.astype(np.float32),
+            simulated.astype(np.float32),
+            entered,
+            jumps,
+            timings.elapsed_ms,
+        )
+
+
+def _stitch(
+    state: Characters, hips: Vectors, rotations: Quaternions, dt: Floats
+) -> tuple[Vectors, Quaternions]:
+    """Let each stitcher turn its characters' sampled poses into the shown ones."""
+    small_dt = dt.astype(np.float32)
+    offsets = _stitch_state(state)
+    for index, stitcher in enumerate(STITCHERS):
+        mine = np.flatnonzero(state.stitcher == index)
+        if len(mine) == len(state):
+            return stitcher.apply(offsets, hips, rotations, small_dt)
+        if len(mine):
+            part = offsets.take(mine)
+            hips[mine], rotations[mine] = stitcher.apply(
+                part, hips[mine], rotations[mine], small_dt[mine]
+            )
+            offsets.put(mine, part)
+    return hips, rotations
+
+
+def _stitch_state(state: Characters) -> StitchState:
+    return StitchState(
+        state.offset_hips,
+        state.offset_hips_velocity,
+        state.offset_rotations,
+        state.offset_angular_velocity,
+    )
+
+
+def _clear_offsets(rows: Characters, which: Flags) -> None:
+    for offset in (
+        rows.offset_hips,
+        rows.offset_hips_velocity,
+        rows.offset_rotations,
+        rows.offset_angular_velocity,
+        rows.root_offset,
+    ):
+        offset[which] = 0.0
+
+
+class _Timings:
+    """Notes how long each stage took."""
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self._last = clock()
+        self.elapsed_ms: dict[str, float] = {}
+
+    def note(self, stage: str) -> None:
+        now = self._clock()
+        self.elapsed_ms[stage] = 1e3 * (now - self._last)
+        self._last = now
