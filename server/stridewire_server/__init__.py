@@ -1,0 +1,1 @@
+"""The server: gRPC around one runtime, streams, flow control, health, commands."""

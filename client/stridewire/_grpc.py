@@ -1,0 +1,233 @@
+"""The transport over gRPC, blocking."""
+
+import json
+import queue
+import threading
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import grpc
+
+from stridewire._codec.queries import (
+    decode_search_result,
+    decode_server_info,
+    encode_search,
+)
+from stridewire._codec.requests import encode_request
+from stridewire._codec.responses import decode_response
+from stridewire._codec.status import DETAILS_KEY, decode_error
+from stridewire._errors import ProtocolError, StridewireError
+from stridewire._messages import (
+    ClientMessage,
+    Close,
+    Edit,
+    Open,
+    Opened,
+    SearchQuery,
+    SearchResult,
+    ServerInfo,
+    ServerMessage,
+    Step,
+)
+from stridewire.v1.animation_pb2_grpc import AnimationServiceStub
+from stridewire.v1.library_pb2 import GetInfoRequest
+from stridewire.v1.library_pb2_grpc import ServerServiceStub
+from stridewire.v1.match_pb2_grpc import MatchServiceStub
+
+T = TypeVar("T")
+
+_RETRIES = {
+    "methodConfig": [
+        {
+            "name": [
+                {"service": f"stridewire.v1.{name}Service"}
+                for name in ("Match", "Library", "Server")
+            ],
+            "retryPolicy": {
+                "maxAttempts": 4,
+                "initialBackoff": "0.1s",
+                "maxBackoff": "1s",
+                "backoffMultiplier": 2,
+                "retryableStatusCodes": ["UNAVAILABLE"],
+            },
+        }
+    ]
+}
+_CHANNEL_OPTIONS = [
+    ("grpc.service_config", json.dumps(_RETRIES)),
+    # Without these two a reader that stalls finds minutes of stale frames in its buffers.
+    ("grpc.http2.bdp_probe", 0),
+    ("grpc.http2.lookahead_bytes", 16_384),
+    ("grpc.keepalive_time_ms", 30_000),
+    ("grpc.keepalive_timeout_ms", 10_000),
+    ("grpc.max_receive_message_length", 8 << 20),
+]
+_WAITING_REQUESTS = 64
+_WAITING_RESPONSES = 2
+_CLOSE_TIMEOUT_S = 2.0
+
+
+class GrpcTransport:
+    """A server at an address; connects when it is first used.
+
+    Args:
+        address: `host:port`.
+        timeout_s: Longest wait for the answer to a query or to Open.
+    """
+
+    def __init__(self, address: str, timeout_s: float = 5.0) -> None:
+        self._timeout_s = timeout_s
+        self._channel = grpc.insecure_channel(address, _CHANNEL_OPTIONS)
+        self._animation = AnimationServiceStub(self._channel)
+        self._match = MatchServiceStub(self._channel)
+        self._server = ServerServiceStub(self._channel)
+
+    def open(self, message: Open) -> "GrpcStream":
+        """Open a session."""
+        return GrpcStream(self._animation.Animate, message, self._timeout_s)
+
+    def search(self, query: SearchQuery) -> SearchResult:
+        """Search the motion database."""
+        return decode_search_result(self._ask(self._match.Search, encode_search(query)))
+
+    def info(self) -> ServerInfo:
+        """Tell versions, libraries, limits."""
+        return decode_server_info(self._ask(self._server.GetInfo, GetInfoRequest()))
+
+    def close(self) -> None:
+        """Close the connection and with it all sessions."""
+        self._channel.close()
+
+    def _ask(self, method: Callable[..., T], request: Any) -> T:
+        try:
+            return method(request, timeout=self._timeout_s)
+        except grpc.RpcError as error:
+            raise to_error(error) from error
+
+
+class GrpcStream:
+    """One session over gRPC.
+
+    A thread of its own reads; it holds two messages at most, so that a caller who does not take
+    them is felt by the server and not by this process's memory.
+    """
+
+    def __init__(self, animate: Callable[[Any], Any], message: Open, timeout_s: float) -> None:
+        self._requests: queue.Queue[Any] = queue.Queue(_WAITING_REQUESTS)
+        self._responses: queue.Queue[ServerMessage | StridewireError | None] = queue.Queue(
+            _WAITING_RESPONSES
+        )
+        self._timeout_s = timeout_s
+        self._ended = threading.Event()
+        self._closing = False
+        self._requests.put(encode_request(message))
+        self._call = animate(iter(self._requests.get, None))
+        threading.Thread(target=self._read, name="stridewire-read", daemon=True).start()
+        self.opened = self._wait_opened()
+
+    def send(self, message: Step | Edit) -> None:
+        """Send a message.
+
+        Raises:
+            ProtocolError: If the session has ended.
+            TimeoutError: If the server takes nothing.
+        """
+        self._send(message)
+
+    def receive(self, timeout_s: float) -> ServerMessage | None:
+        """Wait for the next message; None when the stream has ended.
+
+        Raises:
+            TimeoutError: If nothing came in time.
+            StridewireError: If the stream ended with an error.
+        """
+        try:
+            message = self._responses.get(timeout=timeout_s)
+        except queue.Empty:
+            raise TimeoutError(f"no message from the server within {timeout_s:g} s") from None
+        if message is None or isinstance(message, StridewireError):
+            self._responses.put(message)  # the end stays the end
+        if isinstance(message, StridewireError):
+            raise message
+        return message
+
+    def close(self) -> None:
+        """End the session and free what it holds; twice is harmless."""
+        if self._closing:
+            return
+        self._closing = True
+        if not self._ended.is_set():
+            try:
+                self._send(Close())
+                self._requests.put(None, timeout=self._timeout_s)
+            except (ProtocolError, TimeoutError, queue.Full):
+                self._call.cancel()
+        timer = threading.Timer(_CLOSE_TIMEOUT_S, self._call.cancel)
+        timer.start()
+        while not self._ended.is_set() or not self._responses.empty():
+            self._discard()
+        timer.cancel()
+
+    def _send(self, message: ClientMessage) -> None:
+        if self._ended.is_set():
+            raise ProtocolError("the session has ended; open another one")
+        try:
+            self._requests.put(encode_request(message), timeout=self._timeout_s)
+        except queue.Full:
+            raise TimeoutError(
+                f"the server took no message for {self._timeout_s:g} s; send less often"
+            ) from None
+
+    def _wait_opened(self) -> Opened:
+        try:
+            first = self.receive(self._timeout_s)
+        except BaseException:
+            self._call.cancel()
+            raise
+        if not isinstance(first, Opened):
+            self._call.cancel()
+            raise ProtocolError(f"the server began with {type(first).__name__} instead of Opened")
+        return first
+
+    def _read(self) -> None:
+        end: StridewireError | None = None
+        try:
+            for response in self._call:
+                self._responses.put(decode_response(response))
+        except grpc.RpcError as error:
+            if not (self._closing and error.code() is grpc.StatusCode.CANCELLED):
+                end = to_error(error)
+                end.__cause__ = error
+        except StridewireError as error:
+            end = error
+        finally:
+            self._ended.set()
+            self._release_sender()
+            self._responses.put(end)
+
+    def _release_sender(self) -> None:
+        """Let the thread in which gRPC waits for requests end."""
+        while True:
+            try:
+                self._requests.put_nowait(None)
+                return
+            except queue.Full:
+                self._discard_request()
+
+    def _discard_request(self) -> None:
+        try:
+            self._requests.get_nowait()
+        except queue.Empty:
+            return
+
+    def _discard(self) -> None:
+        try:
+            self._responses.get(timeout=0.05)
+        except queue.Empty:
+            return
+
+
+def to_error(error: grpc.RpcError) -> StridewireError:
+    """Return what a gRPC error means."""
+    metadata: dict[str, Any] = dict(error.trailing_metadata() or ())  # type: ignore[arg-type]
+    return decode_error(error.code().name, error.details() or "", metadata.get(DETAILS_KEY))

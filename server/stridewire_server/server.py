@@ -1,0 +1,122 @@
+"""The server process: services, health and reflection around one runtime."""
+
+import logging
+
+import grpc
+from grpc_health.v1 import health, health_pb2, health_pb2_grpc
+from grpc_reflection.v1alpha import reflection
+
+from stridewire._messages import CharacterSpec, Open, Step
+from stridewire.v1 import (
+    animation_pb2,
+    animation_pb2_grpc,
+    blend_pb2,
+    blend_pb2_grpc,
+    library_pb2,
+    library_pb2_grpc,
+    match_pb2,
+    match_pb2_grpc,
+    stitch_pb2,
+    stitch_pb2_grpc,
+)
+from stridewire_engine.runtime import Runtime
+from stridewire_server.interceptors import ErrorInterceptor
+from stridewire_server.services.about import ServerService
+from stridewire_server.services.animation import AnimationService
+from stridewire_server.services.later import BlendService, StitchService
+from stridewire_server.services.library import LibraryService
+from stridewire_server.services.match import MatchService
+from stridewire_server.settings import ServerSettings
+from stridewire_server.ticker import Ticker
+
+log = logging.getLogger("stridewire.server")
+
+_READY = (
+    animation_pb2.DESCRIPTOR.services_by_name["AnimationService"].full_name,
+    match_pb2.DESCRIPTOR.services_by_name["MatchService"].full_name,
+    library_pb2.DESCRIPTOR.services_by_name["LibraryService"].full_name,
+    library_pb2.DESCRIPTOR.services_by_name["ServerService"].full_name,
+)
+_LATER = (
+    blend_pb2.DESCRIPTOR.services_by_name["BlendService"].full_name,
+    stitch_pb2.DESCRIPTOR.services_by_name["StitchService"].full_name,
+)
+
+
+class AnimationServer:
+    """Serves a runtime until it is stopped; to be made and used in one event loop."""
+
+    def __init__(self, runtime: Runtime, settings: ServerSettings) -> None:
+        self._settings = settings
+        self._ticker = Ticker(runtime)
+        self._animation = AnimationService(self._ticker, settings)
+        self._health = health.aio.HealthServicer()  # type: ignore[attr-defined]
+        self._server = grpc.aio.server(
+            interceptors=[ErrorInterceptor()], options=settings.channel_options(runtime.limits)
+        )
+
+    async def start(self) -> str:
+        """Listen, warm the libraries up, become healthy; returns the bound address.
+
+        Raises:
+            ValueError: If the address cannot be listened on.
+        """
+        self._register()
+        await self._set_health(health_pb2.HealthCheckResponse.NOT_SERVING)
+        address = self._bind()
+        await self._server.start()
+        await self._ticker.call(warm_up, self._ticker.runtime)
+        await self._set_health(health_pb2.HealthCheckResponse.SERVING)
+        return address
+
+    async def stop(self) -> None:
+        """Stop in good order: no longer healthy, open sessions warned and awaited, then the end."""
+        await self._set_health(health_pb2.HealthCheckResponse.NOT_SERVING)
+        await self._animation.drain()
+        await self._server.stop(grace=0.5)
+        self._ticker.shut_down()
+
+    async def wait(self) -> None:
+        """Wait until the server has stopped."""
+        await self._server.wait_for_termination()
+
+    def _register(self) -> None:
+        server, ticker = self._server, self._ticker
+        animation_pb2_grpc.add_AnimationServiceServicer_to_server(self._animation, server)
+        match_pb2_grpc.add_MatchServiceServicer_to_server(MatchService(ticker), server)
+        library_pb2_grpc.add_LibraryServiceServicer_to_server(
+            LibraryService(ticker.runtime), server
+        )
+        library_pb2_grpc.add_ServerServiceServicer_to_server(ServerService(ticker), server)
+        blend_pb2_grpc.add_BlendServiceServicer_to_server(BlendService(), server)
+        stitch_pb2_grpc.add_StitchServiceServicer_to_server(StitchService(), server)
+        health_pb2_grpc.add_HealthServicer_to_server(self._health, server)
+        health_name = health_pb2.DESCRIPTOR.services_by_name["Health"].full_name
+        names = (*_READY, *_LATER, health_name, reflection.SERVICE_NAME)
+        reflection.enable_server_reflection(names, server)
+
+    def _bind(self) -> str:
+        address = self._settings.address
+        try:
+            port = self._server.add_insecure_port(address)
+        except RuntimeError as error:
+            raise ValueError(
+                f"cannot listen on {address}: is the port taken? Give another --address"
+            ) from error
+        return address if address.startswith("unix:") else f"{address.rpartition(':')[0]}:{port}"
+
+    async def _set_health(self, status: int) -> None:
+        """Set the health of the server and of what it offers; what comes later is never healthy."""
+        for name in ("", *_READY):
+            await self._health.set(name, status)
+        for name in _LATER:
+            await self._health.set(name, health_pb2.HealthCheckResponse.NOT_SERVING)
+
+
+def warm_up(runtime: Runtime) -> None:
+    """Make a first frame from every library, so that no caller pays for pages and caches."""
+    for name in runtime.libraries:
+        session = runtime.open(Open([CharacterSpec(0)], library=name))
+        for _ in range(2):
+            runtime.advance([(session, Step())])
+        runtime.close(session)

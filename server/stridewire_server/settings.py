@@ -1,0 +1,54 @@
+"""What an operator can set, and the transport options that follow from it."""
+
+import ipaddress
+from dataclasses import dataclass
+
+from stridewire._messages import Limits
+
+DEFAULT_ADDRESS = "127.0.0.1:50051"
+_MAX_REPLY_BYTES = 8 << 20
+
+
+@dataclass(frozen=True)
+class ServerSettings:
+    """Settings of one server process."""
+
+    address: str = DEFAULT_ADDRESS
+    """Where to listen, `host:port`; port 0 lets the system choose one."""
+    max_sessions: int = 256
+    """Sessions at the same time; one more is refused with RESOURCE_EXHAUSTED."""
+    drain_s: float = 10.0
+    """Time that open sessions are given when the server stops."""
+
+    def channel_options(self, limits: Limits) -> list[tuple[str, int]]:
+        """Return gRPC's options.
+
+        A connection that has gone silent is pinged after a second and given up after another: a
+        client whose machine vanished holds its session for two seconds. One that was closed is
+        noticed at once.
+        """
+        return [
+            ("grpc.max_receive_message_length", limits.max_message_bytes),
+            ("grpc.max_send_message_length", _MAX_REPLY_BYTES),
+            ("grpc.max_concurrent_streams", 4 * self.max_sessions),
+            (
+                "grpc.so_reuseport",
+                0,
+            ),  # a second server on the same port fails instead of sharing it
+            ("grpc.keepalive_time_ms", 1_000),
+            ("grpc.keepalive_timeout_ms", 1_000),
+            ("grpc.keepalive_permit_without_calls", 1),
+            ("grpc.http2.max_pings_without_data", 0),
+            ("grpc.http2.min_recv_ping_interval_without_data_ms", 10_000),
+        ]
+
+
+def is_loopback(address: str) -> bool:
+    """Tell whether an address `host:port` can be reached from this machine alone."""
+    host = address.rpartition(":")[0].strip("[]")
+    if address.startswith("unix:") or host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False

@@ -1,0 +1,1 @@
+"""One Animate stream: what comes in, what goes out, and when."""

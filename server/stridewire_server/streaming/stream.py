@@ -1,0 +1,124 @@
+"""A session on its stream: reading, pacing and writing side by side."""
+
+import asyncio
+from dataclasses import replace
+from typing import Any
+
+from grpc.aio import EOF  # type: ignore[attr-defined]
+
+from stridewire._codec.requests import decode_bare_step, decode_request
+from stridewire._codec.status import MAX_VIOLATIONS
+from stridewire._errors import InvalidRequestError, ProtocolError, Violation
+from stridewire._messages import Close, Edit, Notice, Open, Pacing, Step, StreamError
+from stridewire.v1 import animation_pb2 as pb
+from stridewire_engine.runtime import Session
+from stridewire_server.streaming.outbox import Outbox
+from stridewire_server.streaming.schedule import Schedule
+from stridewire_server.streaming.writer import Writer
+from stridewire_server.ticker import Advanced, Ticker
+
+
+class AnimateStream:
+    """One open session; reads the next message only when the last one is done with.
+
+    So a client that floods its stream is held back by HTTP/2 and not by memory.
+    """
+
+    def __init__(self, context: Any, ticker: Ticker, session: Session) -> None:
+        self._context = context
+        self._ticker = ticker
+        self._runtime = ticker.runtime
+        self._session = session
+        self._settings = session.opened.settings
+        self._outbox = Outbox(self._settings.max_frames_in_flight)
+        self._writer = Writer(context, self._outbox, session.opened.limits.write_timeout_s)
+
+    def notify(self, notice: Notice) -> None:
+        """Send news."""
+        self._outbox.put(notice)
+
+    async def run(self) -> None:
+        """Serve until the client ends the session.
+
+        Raises:
+            ProtocolError: If a second Open comes.
+            ExhaustedError: If the client does not read.
+        """
+        self._outbox.put(self._session.opened)
+        reading = asyncio.create_task(self._read_all())
+        writing = asyncio.create_task(self._writer.run())
+        tasks = {reading, writing}
+        if self._settings.pacing is Pacing.SERVER:
+            tasks.add(asyncio.create_task(self._pace()))
+        try:
+            done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                task.result()
+            self._outbox.finish()
+            await writing
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _read_all(self) -> None:
+        while (request := await self._context.read()) is not EOF:
+            match self._decode(request):
+                case Step() as step, violations:
+                    await self._take_step(step, violations)
+                case Edit() as edit, _:
+                    self._report(
+                        0, (), await self._ticker.call(self._runtime.edit, self._session, edit)
+                    )
+                case Close(), _:
+                    return
+                case Open(), _:
+                    raise ProtocolError(
+                        "a second Open; a stream is one session: open another stream for another"
+                    )
+
+    def _decode(self, request: pb.AnimateRequest) -> tuple[object, tuple[Violation, ...]]:
+        """Return the message; one that makes no sense loses its controls and is reported."""
+        try:
+            return decode_request(request), ()
+        except InvalidRequestError as error:
+            if request.WhichOneof("message") == "step":
+                return decode_bare_step(request.step), error.violations
+            self._report(0, error.violations)
+            return None, ()
+
+    async def _take_step(self, step: Step, violations: tuple[Violation, ...]) -> None:
+        if wrong := self._outbox.acknowledge(step.last_frame):
+            violations = (*violations, wrong)
+        error = None
+        if not step.ack_only:
+            if self._settings.pacing is Pacing.CLIENT:
+                await self._advance(step, violations)
+                return
+            error = await self._ticker.call(self._runtime.control, self._session, step)
+        self._report(step.step, violations, error)
+
+    async def _pace(self) -> None:
+        """Make frames at the session's rate; time that is lost beyond the catch-up is let go."""
+        loop = asyncio.get_running_loop()
+        period = 1.0 / self._settings.rate_hz
+        schedule = Schedule(self._settings.rate_hz, loop.time())
+        while True:
+            await asyncio.sleep(schedule.next_due(loop.time()) - loop.time())
+            await self._advance(self._session.held_step(period), ())
+
+    async def _advance(self, step: Step, violations: tuple[Violation, ...]) -> None:
+        advanced: Advanced = await self._ticker.advance(self._session, step)
+        frame, error = advanced
+        self._report(step.step, violations, error)
+        self._outbox.offer(frame)
+
+    def _report(
+        self, step: int, violations: tuple[Violation, ...], error: StreamError | None = None
+    ) -> None:
+        """Send what was wrong, if anything, as one message."""
+        error = error or StreamError(step, ())
+        found = (*violations, *error.violations)
+        if found:
+            more = error.more + max(0, len(found) - MAX_VIOLATIONS)
+            self._outbox.put(replace(error, violations=found[:MAX_VIOLATIONS], more=more))
