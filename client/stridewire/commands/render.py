@@ -5,7 +5,6 @@ from pathlib import Path
 
 import click
 
-from stridewire._errors import StridewireError
 from stridewire.drawing import Subject, draw_contact_sheet
 from stridewire.formats.bvh import read_bvh
 
@@ -38,12 +37,9 @@ def render(
     Shows figures at even times, the way from above, the feet and the speed over time.
     """
     out = out or motion.with_suffix(".png")
-    try:
-        subject = Subject.of_source(read_bvh(motion))
-        subject = subject.between(start, subject.seconds if end is None else end)
-        draw_contact_sheet(subject, out, title=title, columns=columns, rows=rows)
-    except (StridewireError, ValueError, OSError) as error:
-        raise click.ClickException(str(error)) from None
+    subject = Subject.of_source(read_bvh(motion))
+    subject = subject.between(start, subject.seconds if end is None else end)
+    draw_contact_sheet(subject, out, title=title, columns=columns, rows=rows)
     facts = {
         "picture": str(out),
         "motion": str(motion),

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from stridewire.commands.render import render
+from stridewire.commands import main
 from stridewire.formats.bvh_writing import write_bvh
 from stridewire.motion.clip import Clip
 
@@ -20,7 +20,7 @@ def bvh(tmp_path: Path, swaying_clip: Clip) -> Path:
 
 def test_the_picture_lies_beside_the_motion_by_default(bvh: Path) -> None:
     """Without --out the ending changes; what was drawn is said."""
-    result = CliRunner().invoke(render, [str(bvh)])
+    result = CliRunner().invoke(main, ["render", str(bvh)])
     assert result.exit_code == 0, result.output
     assert bvh.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
     assert "2.0 s" in result.output
@@ -30,8 +30,8 @@ def test_the_picture_lies_beside_the_motion_by_default(bvh: Path) -> None:
 def test_json_is_one_object(bvh: Path, tmp_path: Path) -> None:
     """Programs read what was drawn, of the span asked for."""
     out = tmp_path / "out.png"
-    arguments = [str(bvh), "--out", str(out), "--start", "0.5", "--end", "1.0", "--json"]
-    result = CliRunner().invoke(render, arguments)
+    arguments = ["render", str(bvh), "--out", str(out), "--start", "0.5", "--end", "1.0", "--json"]
+    result = CliRunner().invoke(main, arguments)
     facts = json.loads(result.output)
     assert (facts["picture"], facts["frames"], facts["joints"]) == (str(out), 31, 22)
     assert out.exists()
@@ -47,17 +47,17 @@ def test_json_is_one_object(bvh: Path, tmp_path: Path) -> None:
 def test_what_cannot_be_drawn_is_a_sentence(
     bvh: Path, content: str | None, arguments: list[str], message: str
 ) -> None:
-    """No traceback: exit code 1 and what is wrong."""
+    """No traceback: a failing exit code and what is wrong."""
     if content is not None:
         bvh.write_text(content)
-    result = CliRunner().invoke(render, [str(bvh), *arguments])
-    assert result.exit_code == 1
+    result = CliRunner().invoke(main, ["render", str(bvh), *arguments])
+    assert result.exit_code == 2
     assert message in result.output
     assert not bvh.with_suffix(".png").exists()
 
 
 def test_a_missing_file_is_a_sentence(tmp_path: Path) -> None:
     """The name that was given is in the message."""
-    result = CliRunner().invoke(render, [str(tmp_path / "none.bvh")])
+    result = CliRunner().invoke(main, ["render", str(tmp_path / "none.bvh")])
     assert result.exit_code == 1
     assert "none.bvh" in result.output
