@@ -76,6 +76,7 @@ class GrpcTransport:
     """
 
     def __init__(self, address: str, timeout_s: float = 5.0) -> None:
+        self._address = address
         self._timeout_s = timeout_s
         self._channel = grpc.insecure_channel(address, _CHANNEL_OPTIONS)
         self._animation = AnimationServiceStub(self._channel)
@@ -84,7 +85,7 @@ class GrpcTransport:
 
     def open(self, message: Open) -> "GrpcStream":
         """Open a session."""
-        return GrpcStream(self._animation.Animate, message, self._timeout_s)
+        return GrpcStream(self._animation.Animate, self._address, message, self._timeout_s)
 
     def search(self, query: SearchQuery) -> SearchResult:
         """Search the motion database."""
@@ -102,7 +103,7 @@ class GrpcTransport:
         try:
             return method(request, timeout=self._timeout_s)
         except grpc.RpcError as error:
-            raise to_error(error) from error
+            raise to_error(error, self._address) from error
 
 
 class GrpcStream:
@@ -112,7 +113,10 @@ class GrpcStream:
     them is felt by the server and not by this process's memory.
     """
 
-    def __init__(self, animate: Callable[[Any], Any], message: Open, timeout_s: float) -> None:
+    def __init__(
+        self, animate: Callable[[Any], Any], address: str, message: Open, timeout_s: float
+    ) -> None:
+        self._address = address
         self._requests: queue.Queue[Any] = queue.Queue(_WAITING_REQUESTS)
         self._responses: queue.Queue[ServerMessage | StridewireError | None] = queue.Queue(
             _WAITING_RESPONSES
@@ -196,7 +200,7 @@ class GrpcStream:
                 self._responses.put(decode_response(response))
         except grpc.RpcError as error:
             if not (self._closing and error.code() is grpc.StatusCode.CANCELLED):
-                end = to_error(error)
+                end = to_error(error, self._address)
                 end.__cause__ = error
         except StridewireError as error:
             end = error
@@ -227,7 +231,11 @@ class GrpcStream:
             return
 
 
-def to_error(error: grpc.RpcError) -> StridewireError:
+def to_error(error: grpc.RpcError, address: str) -> StridewireError:
     """Return what a gRPC error means."""
     metadata: dict[str, Any] = dict(error.trailing_metadata() or ())  # type: ignore[arg-type]
-    return decode_error(error.code().name, error.details() or "", metadata.get(DETAILS_KEY))
+    details: bytes | None = metadata.get(DETAILS_KEY)
+    message = error.details() or ""
+    if error.code() is grpc.StatusCode.UNAVAILABLE and details is None:  # not said by our server
+        message = f"no connection to {address} ({message}); `stridewire serve` starts a server"
+    return decode_error(error.code().name, message, details)

@@ -1,0 +1,5 @@
+"""`python -m stridewire`: the command line."""
+
+from stridewire.commands import main
+
+main()

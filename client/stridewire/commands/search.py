@@ -1,0 +1,66 @@
+"""`stridewire search`: moments of the motion database that fit."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+
+from stridewire._messages import DesiredMotion, SearchResult
+from stridewire.commands.targets import connect, target_options
+
+
+@click.command()
+@click.option("--clip", required=True, help="Clip to continue from.")
+@click.option("--time", "time_s", default=0.0, show_default=True, help="Seconds within the clip.")
+@click.option(
+    "--velocity",
+    metavar="X,Z",
+    help="Desired velocity to the character's left and front, m/s; the clip's by default.",
+)
+@click.option("--facing", type=float, help="Desired heading relative to the root, radians.")
+@click.option("-k", "count", default=5, show_default=True, help="Number of matches.")
+@click.option("--library-name", default="", help="Library of the server; its default by default.")
+@target_options
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def search(
+    clip: str,
+    time_s: float,
+    velocity: str | None,
+    facing: float | None,
+    count: int,
+    library_name: str,
+    address: str | None,
+    library: Path | None,
+    as_json: bool,
+) -> None:
+    """Find the moments that continue best from a moment of a clip."""
+    intent = _intent(velocity, facing)
+    with connect(address, library) as client:
+        result = client.search(clip, time_s, intent, k=count, library=library_name)
+    if as_json:
+        click.echo(json.dumps(asdict(result)))
+    else:
+        _print(result)
+
+
+def _intent(velocity: str | None, facing: float | None) -> DesiredMotion | None:
+    if velocity is None:
+        if facing is not None:
+            raise click.UsageError("--facing needs --velocity; give --velocity 0,0 to stand")
+        return None
+    try:
+        x, z = map(float, velocity.split(","))
+    except ValueError:
+        raise click.BadParameter(
+            f"{velocity!r}; expected two numbers such as 0,1.4", param_hint="--velocity"
+        ) from None
+    return DesiredMotion(x, z, facing)
+
+
+def _print(result: SearchResult) -> None:
+    click.echo(f"{'clip':<32} {'time':>8}  {'cost':>9}  tags")
+    for match in result.matches:
+        click.echo(
+            f"{match.clip:<32} {match.time_s:>6.2f} s  {match.cost:>9.4f}  {', '.join(match.tags)}"
+        )

@@ -1,0 +1,99 @@
+"""`stridewire serve`: the server process."""
+
+import asyncio
+import json
+import logging
+import os
+import signal
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from stridewire_engine.library import Library
+    from stridewire_server.server import AnimationServer
+
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@click.command()
+@click.option(
+    "--library",
+    "libraries",
+    multiple=True,
+    metavar="[NAME=]FOLDER",
+    help="Library to serve, the first is the default one; without any, the embedded synthetic one.",
+)
+@click.option("--address", default="127.0.0.1:50051", show_default=True, help="Port 0 picks one.")
+@click.option("--insecure", is_flag=True, help="Allow an address that other machines can reach.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object when ready.")
+def serve(libraries: tuple[str, ...], address: str, insecure: bool, as_json: bool) -> None:
+    """Serve characters over gRPC until SIGTERM or Ctrl-C."""
+    for name in _THREADS:  # before numpy is loaded: more threads only fight the tick
+        os.environ.setdefault(name, "1")
+    from stridewire_server.settings import is_loopback
+
+    if not (insecure or is_loopback(address)):
+        raise click.UsageError(
+            f"{address} can be reached by other machines and this server asks nobody who they are; "
+            "add --insecure to serve there all the same"
+        )
+    logging.basicConfig(format="%(asctime)s %(levelname)s %(name)s: %(message)s")
+    asyncio.run(_serve(_open(libraries), address, as_json))
+
+
+def _open(given: tuple[str, ...]) -> "list[Library]":
+    from dataclasses import replace
+
+    from stridewire_engine.building import embedded_library
+    from stridewire_engine.library import Library
+
+    if not given:
+        return [embedded_library()]
+    libraries = []
+    for text in given:
+        name, _, folder = text.rpartition("=")
+        library = Library.open(folder)
+        if name:
+            library.manifest = replace(library.manifest, name=name)
+        libraries.append(library)
+    return libraries
+
+
+async def _serve(libraries: "list[Library]", address: str, as_json: bool) -> None:
+    from stridewire_engine.runtime import Runtime
+    from stridewire_server.server import AnimationServer
+    from stridewire_server.settings import ServerSettings
+
+    server = AnimationServer(Runtime(libraries), ServerSettings(address=address))
+    bound = await server.start()
+    _announce(bound, libraries, as_json)
+    await _wait_for_signal()
+    await _stop(server)
+
+
+def _announce(address: str, libraries: "list[Library]", as_json: bool) -> None:
+    infos = [library.info() for library in libraries]
+    if as_json:
+        names = [{"name": info.name, "synthetic": info.synthetic} for info in infos]
+        click.echo(json.dumps({"address": address, "libraries": names}))
+        return
+    click.echo(f"listening on {address}")
+    for info in infos:
+        kind = "synthetic" if info.synthetic else "captured"
+        click.echo(f"library {info.name} ({kind}, {info.clips} clips, {info.frames} frames)")
+
+
+async def _wait_for_signal() -> None:
+    asked = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        loop.add_signal_handler(number, asked.set)
+    await asked.wait()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        loop.remove_signal_handler(number)  # asked again, the process ends at once
+
+
+async def _stop(server: "AnimationServer") -> None:
+    click.echo("stopping: open sessions have been told", err=True)
+    await server.stop()
