@@ -1,0 +1,63 @@
+# The documented commands; each sets up what it needs.
+PYTHON ?= python3
+VENV ?= .venv
+PROTO_VENV ?= .proto-venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check
+# where the motion capture lies, for tests and checks that need it; they skip without
+STRIDEWIRE_DATA ?= $(abspath ../shared/data)
+export STRIDEWIRE_DATA PROTO_VENV
+
+.PHONY: demo test lint proto show-spine image clean help
+.DEFAULT_GOAL := help
+
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 14
+
+demo: $(VENV)/.server ## drive characters over gRPC for 10 s; LIBRARY=FOLDER drives a library of yours
+	$(BIN)/stridewire demo $(if $(LIBRARY),--library "$(LIBRARY)")
+
+test: $(VENV)/.dev ## run all tests
+	$(BIN)/pytest
+
+lint: $(VENV)/.dev ## check style, types, contract and Dockerfile
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/buf lint
+	$(BIN)/hadolint Dockerfile
+
+proto: $(PROTO_VENV)/.ready ## make the stubs anew after a change in proto/
+	$(PROTO_VENV)/bin/python -m grpc_tools.protoc -Iproto --python_out=client --pyi_out=client \
+		--grpc_python_out=client $$(find proto -name '*.proto')
+
+show-spine: $(VENV)/.dev ## check what the service claims, point by point
+	$(BIN)/python tests/show/spine.py $(SHOW)
+
+image: ## build the container image
+	docker build -t stridewire .
+
+clean: ## remove what the other targets made
+	rm -rf $(VENV) $(PROTO_VENV) build dist demo.bvh demo.png
+	rm -rf .mypy_cache .pytest_cache .ruff_cache
+
+$(VENV)/.server: pyproject.toml | $(BIN)/python
+	@echo "installing stridewire and what the server needs into $(VENV) …"
+	$(PIP) install -q -e '.[server]'
+	@touch $@
+
+$(VENV)/.dev: pyproject.toml | $(BIN)/python
+	@echo "installing stridewire and the development tools into $(VENV) …"
+	$(PIP) install -q -e '.[dev]'
+	@touch $@ $(VENV)/.server
+
+# the oldest supported generator; its pkg_resources went away with setuptools 80
+$(PROTO_VENV)/.ready:
+	$(PYTHON) -m venv $(PROTO_VENV)
+	$(PROTO_VENV)/bin/python -m pip install -q --disable-pip-version-check 'grpcio-tools==1.62.3' 'setuptools<80'
+	@touch $@
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "$(PYTHON) is older than 3.11: make PYTHON=python3.11 …"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
