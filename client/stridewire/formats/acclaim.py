@@ -1,8 +1,8 @@
 """Reading Acclaim: a skeleton (ASF) and its motions (AMC).
 
 A bone's joint is where the bone begins. Each bone turns in an axis frame C of its own: with the
-rotation M of its degrees of freedom its local rotation is C M C^-1, so that zero angles are the rest
-pose and all joints' frames are parallel there.
+rotation M of its degrees of freedom its local rotation is C M C^-1, so that zero angles are the
+rest pose and all joints' frames are parallel there.
 """
 
 import re
@@ -153,8 +153,8 @@ def _turn(angles: Floats, order: str) -> Quaternions:
 def _root_bone(path: Path, lines: list[tuple[int, str]], radians: bool) -> _Bone:
     order: tuple[str, ...] = _ROOT_ORDER
     letters, orientation = "xyz", ["0", "0", "0"]
-    number = 1
-    for number, line in lines:
+    last = lines[-1][0] if lines else 1
+    for _, line in lines:
         words = line.split()
         if words[0] == "order":
             order = tuple(words[1:])
@@ -163,8 +163,8 @@ def _root_bone(path: Path, lines: list[tuple[int, str]], radians: bool) -> _Bone
         elif words[0] == "orientation":
             orientation = words[1:]
     if not set(order) <= set(_ROOT_ORDER):
-        raise FormatError(path, f"root order {' '.join(order)}; expected TX TY TZ RX RY RZ", number)
-    axis = _axis(path, [*orientation, letters], number, radians)
+        raise FormatError(path, f"root order {' '.join(order)}; expected TX TY TZ RX RY RZ", last)
+    axis = _axis(path, [*orientation, letters], last, radians)
     return _Bone(_ROOT, np.zeros(3), axis, order)
 
 
@@ -182,9 +182,7 @@ def _bones(path: Path, lines: list[tuple[int, str]], radians: bool) -> list[_Bon
     return bones
 
 
-def _bone(
-    path: Path, fields: dict[str, tuple[int, list[str]]], end: int, radians: bool
-) -> _Bone:
+def _bone(path: Path, fields: dict[str, tuple[int, list[str]]], end: int, radians: bool) -> _Bone:
     for needed in ("name", "direction", "length"):
         if not fields.get(needed, (0, []))[1]:
             raise FormatError(path, f"a bone has no {needed}; export the file again", end)
@@ -227,7 +225,9 @@ def _figure(
     by_name = {bone.name: bone for bone in bones}
     order = [_ROOT]
     for name in order:
-        order += [child for child, parent in parents.items() if parent == name and child not in order]
+        order += [
+            child for child, parent in parents.items() if parent == name and child not in order
+        ]
     ordered = [by_name[name] for name in order]
     parent_of = [-1, *(order.index(parents[name]) for name in order[1:])]
     offsets = np.array([np.zeros(3), *(ordered[p].direction for p in parent_of[1:])])
@@ -255,7 +255,8 @@ def _rows(path: Path, figure: AcclaimSkeleton) -> tuple[dict[str, Floats], list[
     }
     canonical = {name.lower(): name for name in lengths}
     values: dict[str, list[str]] = {name: [] for name in lengths}
-    frames, notes = 0, []
+    frames = 0
+    notes: list[str] = []
     for number, line in enumerate(_lines(path), start=1):
         words = line.split()
         if not words or words[0][0] in "#:":

@@ -4,16 +4,20 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from stridewire.formats.bvh import read_bvh
+from stridewire.formats.reading import read_motion
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion.clip import Clip
 from stridewire_engine.building.cleaning import clean
+from stridewire_engine.building.joint_mapping import map_joints
 from stridewire_engine.building.profiles import Profile, shipped_profiles
 from stridewire_engine.building.retarget import fits, retarget
 from stridewire_engine.building.tagging import tag
 
-ENDINGS = (".bvh",)
+ENDINGS = (".bvh", ".amc")
 """Endings of the files that can be imported."""
+
+ACCLAIM_RATE = 120.0
+"""Frames per second where the file says nothing: most AMC files are CMU's."""
 
 _FEWEST_FRAMES = 10
 
@@ -64,15 +68,15 @@ def import_file(path: Path, profiles: Sequence[Profile], name: str) -> Outcome:
         ValueError: If it cannot be read or is not a human's motion.
         OSError: If it cannot be opened.
     """
-    source = read_bvh(path)
-    profile = _find_profile(source, profiles)
+    source = read_motion(path)
+    profile = find_profile(source, profiles)
     if len(source) < _FEWEST_FRAMES:
         raise RefusedError(f"{path}: {len(source)} frames; expected at least {_FEWEST_FRAMES}")
-    assert source.frame_rate is not None
-    motion = retarget(source, profile, source.frame_rate)
+    frame_rate = source.frame_rate or ACCLAIM_RATE
+    motion = retarget(source, profile, frame_rate)
     floor = 0.0 if motion.unchanged else None
-    clip = clean(name, motion.hips, motion.rotations, source.frame_rate, path.name, floor)
-    return Outcome(path, tag(clip, path.stem), notes=source.notes)
+    clip = clean(name, motion.hips, motion.rotations, frame_rate, path.name, floor)
+    return Outcome(path, tag(clip, path.stem), notes=(*source.notes, *motion.notes))
 
 
 def clip_names(paths: Sequence[Path]) -> dict[Path, str]:
@@ -91,11 +95,13 @@ def _numbered(name: str) -> Iterator[str]:
     yield from (f"{name}-{number}" for number in range(2, 10**6))
 
 
-def _find_profile(source: SourceMotion, profiles: Sequence[Profile]) -> Profile:
-    for profile in profiles:
+def find_profile(source: SourceMotion, profiles: Sequence[Profile]) -> Profile:
+    """Return the fitting profile that names most joints, else one made up for this skeleton.
+
+    Raises:
+        MappingError: If no profile fits and the skeleton's parts cannot be told.
+    """
+    for profile in sorted(profiles, key=lambda p: (-len(p.joints), not p.axes)):
         if fits(source, profile):
             return profile
-    raise RefusedError(
-        f"{source.path}: no profile fits a skeleton with the joints "
-        f"{', '.join(source.skeleton.names[:6])} …"
-    )
+    return Profile("unknown", source.path.name, map_joints(source.skeleton).joints)

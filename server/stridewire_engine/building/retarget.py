@@ -6,22 +6,29 @@ of the legs' lengths.
 """
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion import kinematics, quaternion
-from stridewire.motion.array_types import Floats, Quaternions, Vectors
+from stridewire.motion.array_types import Quaternions, Vectors
 from stridewire.motion.skeleton import REFERENCE
+from stridewire_engine.building.figure import NEXT, SIDES, Figure, direction, see
 from stridewire_engine.building.profiles import Profile
-from stridewire_engine.building.retarget_feet import SIDES, flatten, plant, standing
+from stridewire_engine.building.rest_pose import joint_axes
+from stridewire_engine.building.retarget_feet import level_soles, plant, standing, toe_path
 
 _SAME = 1e-3
 _ALONG = np.cos(np.deg2rad(35.0))
+_TRUNK = ("Hips", "Spine", "Spine1", "Spine2", "Neck", "Head")
+_INSTEAD = {
+    side + part: side + of for side in SIDES for part, of in (("Toe", "Foot"), ("Hand", "ForeArm"))
+} | {f"{side}Shoulder": "Spine2" for side in SIDES}
+"""Whose rotation a part takes that the source lacks."""
 
-LEG = ("UpLeg", "Leg", "Foot")
-"""Endings of the names of hip, knee and ankle."""
+
+class NotHumanError(ValueError):
+    """A figure's proportions are no human's; the message says which."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +41,7 @@ class Retargeted:
     """`(T, 22, 4)` local, the hips' in the world."""
     scale: float
     """Metres on the reference skeleton per file unit."""
+    notes: tuple[str, ...] = ()
     unchanged: bool = False
     """Whether the file is on the reference skeleton itself, its ground at 0."""
 
@@ -42,52 +50,81 @@ def retarget(source: SourceMotion, profile: Profile, frame_rate: float) -> Retar
     """Carry a motion over to the reference skeleton.
 
     Args:
-        source: Y up, any unit.
-        profile: Must name a joint of `source` for each joint of the reference.
+        source: Any unit, Y or Z up.
+        profile: How its joints map; parts that it lacks follow their neighbours.
         frame_rate: Frames per second of `source`.
 
     Raises:
         SkeletonError: If the source lacks a joint that the profile names.
+        NotHumanError: If the proportions are no human's.
     """
     if (scale := _reference_scale(source)) is not None:
         return Retargeted(source.root_positions * scale, source.rotations, scale, unchanged=True)
-    joints = source.skeleton.indices([profile.joints[name] for name in REFERENCE.names])
-    positions, turned = source.global_poses()
-    axes = quaternion.identity(len(REFERENCE), dtype=np.float64)
-    for name, turn in profile.axes.items():
-        axes[REFERENCE.index(name)] = turn
-    turned = quaternion.multiply(turned[:, joints], axes)
-    scale = leg_length(REFERENCE.offsets) / leg_length_of(positions[:, joints])
-    legs = REFERENCE.indices(["LeftUpLeg", "RightUpLeg"])
-    middle = scale * positions[:, joints[legs]].mean(axis=1)
-    stands = {}
+    figure = see(source, profile.source_joints(source.skeleton), profile.up)
+    check_human(source, figure)
+    scale = leg_length() / figure.length("UpLeg", "Leg", "Foot")
+    axes = {**joint_axes(figure), **profile.axes}
+    turned = _turned(figure, axes)
+    for part in (f"{side}Shoulder" for side in SIDES):
+        if part in figure.parts and part not in profile.axes:
+            turned[:, REFERENCE.index(part)] = _shrug(figure, part, turned)
+    feet = {}
     for side in SIDES:
-        foot = REFERENCE.indices([f"{side}Foot", f"{side}Toe"])
-        stands[side] = standing(scale * positions[:, joints[foot]], frame_rate)
-        for joint in foot:
-            turned[:, joint] = flatten(turned, joint, stands[side], frame_rate)
-    below = np.broadcast_to(REFERENCE.offsets[legs].mean(axis=0), middle.shape)
-    hips = middle - quaternion.rotate(turned[:, 0], below)
+        toe = toe_path(figure, turned, side, scale)
+        feet[side] = scale * np.stack([figure.at(f"{side}Foot"), toe], axis=1)
+    stands = {side: standing(feet[side], frame_rate) for side in SIDES}
     for side in SIDES:
-        toe = joints[REFERENCE.index(f"{side}Toe")]
-        turned = plant(hips, turned, side, scale * positions[:, toe], stands[side])
+        turned = level_soles(turned, side, feet[side], stands[side], frame_rate)
+    hips = _hips(figure, turned, scale)
+    for side in SIDES:
+        turned = plant(hips, turned, side, feet[side], stands[side], frame_rate)
     local = kinematics.to_local(REFERENCE, turned)
-    return Retargeted(hips, quaternion.unroll(quaternion.normalize(local)), scale)
+    notes = ("Z is up",) if figure.turned_up and profile.up is None else ()
+    return Retargeted(hips, quaternion.unroll(quaternion.normalize(local)), scale, notes)
+
+
+def check_human(source: SourceMotion, figure: Figure) -> None:
+    """Refuse four-legged and other figures whose limbs have no human's proportions.
+
+    Raises:
+        NotHumanError: If arms or trunk are too short or too long for the legs.
+    """
+    leg = figure.length("UpLeg", "Leg", "Foot")
+    arm = figure.length("Arm", "ForeArm", "Hand")
+    trunk = figure.length("UpLeg", "Arm")
+    for what, ratio, low, high in (
+        ("arms", arm / max(leg, 1e-9), 0.4, 0.85),
+        ("trunk", trunk / max(leg, 1e-9), 0.35, 1.0),
+    ):
+        if not low <= ratio <= high:
+            raise NotHumanError(
+                f"{source.path}: no human: the {what} measure {ratio:.2f} of the legs, a human's "
+                f"{low} to {high}; a live library holds humans, `stridewire convert` keeps others"
+            )
 
 
 def fits(source: SourceMotion, profile: Profile) -> bool:
-    """Return whether a skeleton has the profile's joints and its legs the profile's axes."""
-    names = source.skeleton.names
-    if not set(profile.joints.values()) <= set(names):
+    """Return whether a skeleton has the profile's joints and its limbs the profile's axes."""
+    if not profile.covers(source.skeleton):
         return False
-    for side in SIDES:
-        for parent, child in pairwise(LEG):
-            axes = profile.axes.get(side + parent, quaternion.identity(dtype=np.float64))
-            bone = quaternion.rotate(axes, REFERENCE.offsets[REFERENCE.index(side + child)])
-            offset = source.skeleton.offsets[names.index(profile.joints[side + child])]
-            if bone @ offset < _ALONG * np.linalg.norm(bone) * np.linalg.norm(offset):
+    figure = see(source, profile.source_joints(source.skeleton), profile.up)
+    for part, end in NEXT.items():
+        if part in profile.axes:
+            at_rest = direction(REFERENCE.offsets[REFERENCE.index(end)])
+            expected = quaternion.rotate(profile.axes[part], at_rest)
+            if expected @ direction(figure.bone(part, end)) < _ALONG:
                 return False
     return True
+
+
+def leg_length() -> float:
+    """Return thigh and shin of the reference skeleton; metres."""
+    return _leg_length(REFERENCE.offsets)
+
+
+def _leg_length(offsets: Vectors) -> float:
+    lower = REFERENCE.indices([side + part for side in SIDES for part in ("Leg", "Foot")])
+    return float(np.linalg.norm(offsets[lower], axis=-1).sum() / 2.0)
 
 
 def _reference_scale(source: SourceMotion) -> float | None:
@@ -95,22 +132,66 @@ def _reference_scale(source: SourceMotion) -> float | None:
     skeleton = source.skeleton
     if skeleton.names != REFERENCE.names or skeleton.parents != REFERENCE.parents:
         return None
-    scale = leg_length(REFERENCE.offsets) / max(leg_length(skeleton.offsets), 1e-9)
+    scale = leg_length() / max(_leg_length(skeleton.offsets), 1e-9)
     same = np.abs(skeleton.offsets[1:] * scale - REFERENCE.offsets[1:]).max() < _SAME
     return scale if same and source.translations is None else None
 
 
-def leg_length(offsets: Vectors) -> float:
-    """Return thigh and shin of the reference skeleton's offsets `(22, 3)`, mean of both sides."""
-    lower = REFERENCE.indices([side + part for side in ("Left", "Right") for part in LEG[1:]])
-    return float(np.linalg.norm(offsets[lower], axis=-1).sum() / 2.0)
+def _turned(figure: Figure, axes: dict[str, Quaternions]) -> Quaternions:
+    """Return rotations `(T, 22, 4)` of the reference's joints in the world."""
+    turned = np.empty((len(figure.positions), len(REFERENCE), 4))
+    for column, part in enumerate(figure.parts):
+        turned[:, REFERENCE.index(part)] = quaternion.multiply(
+            figure.rotations[:, column], axes[part]
+        )
+        if part in NEXT:
+            turned[:, REFERENCE.index(part)] = _aim(figure, part, turned)
+    _fill_trunk(figure, turned)
+    for part, instead in _INSTEAD.items():
+        if part not in figure.parts:
+            turned[:, REFERENCE.index(part)] = turned[:, REFERENCE.index(instead)]
+    return turned
 
 
-def leg_length_of(positions: Vectors) -> float:
-    """Return thigh and shin, mean of both sides, median over frames, of joints `(T, 22, 3)`."""
-    total: Floats = np.zeros(len(positions))
-    for side in ("Left", "Right"):
-        hip, knee, ankle = REFERENCE.indices([side + part for part in LEG])
-        total += np.linalg.norm(positions[:, knee] - positions[:, hip], axis=-1)
-        total += np.linalg.norm(positions[:, ankle] - positions[:, knee], axis=-1)
-    return float(np.median(total) / 2.0)
+def _aim(figure: Figure, part: str, turned: Quaternions) -> Quaternions:
+    """Point a limb along the source's, whose bones may stretch where joints have positions."""
+    rotation = turned[:, REFERENCE.index(part)]
+    at_rest = REFERENCE.offsets[REFERENCE.index(NEXT[part])]
+    now = quaternion.rotate(rotation, np.broadcast_to(at_rest, (len(rotation), 3)))
+    aim = figure.at(NEXT[part]) - figure.at(part)
+    aim = np.where(np.linalg.norm(aim, axis=-1, keepdims=True) > 0.0, aim, now)
+    return quaternion.multiply(quaternion.between(now, aim), rotation)
+
+
+def _shrug(figure: Figure, part: str, turned: Quaternions) -> Quaternions:
+    """Swing a shoulder against the chest as the source's collar bone; twists of that bone drop."""
+    chest = turned[:, REFERENCE.index("Spine2")]
+    along = figure.at(part.replace("Shoulder", "Arm")) - figure.at(part)
+    local = quaternion.rotate(quaternion.conjugate(chest), along)
+    usual = np.median(local, axis=0)
+    if min(np.linalg.norm(local, axis=-1).min(), np.linalg.norm(usual)) < 1e-9:
+        return chest
+    return quaternion.multiply(chest, quaternion.between(usual, local))
+
+
+def _fill_trunk(figure: Figure, turned: Quaternions) -> None:
+    """Give parts of the trunk that the source lacks a rotation between their neighbours'."""
+    had = [i for i, part in enumerate(_TRUNK) if part in figure.parts]
+    columns = REFERENCE.indices(_TRUNK)
+    for i, column in enumerate(columns):
+        if i in had:
+            continue
+        below = max(h for h in had if h < i)
+        above = min((h for h in had if h > i), default=below)
+        weight = np.array((i - below) / max(above - below, 1))
+        turned[:, column] = quaternion.slerp(
+            turned[:, columns[below]], turned[:, columns[above]], weight
+        )
+
+
+def _hips(figure: Figure, turned: Quaternions, scale: float) -> Vectors:
+    """Return the hips `(T, 3)` such that the middle between the hip joints is the source's."""
+    legs = REFERENCE.indices([f"{side}UpLeg" for side in SIDES])
+    middle = scale * 0.5 * (figure.at("LeftUpLeg") + figure.at("RightUpLeg"))
+    below = np.broadcast_to(REFERENCE.offsets[legs].mean(axis=0), middle.shape)
+    return np.asarray(middle - quaternion.rotate(turned[:, 0], below))

@@ -11,13 +11,14 @@ from stridewire.motion.array_types import Flags, Floats, Quaternions, Vectors
 from stridewire.motion.clip import differences
 from stridewire.motion.skeleton import REFERENCE
 from stridewire.motion.two_bone_ik import two_bone_ik
-
-SIDES = ("Left", "Right")
+from stridewire_engine.building.figure import Figure
 
 _STILL = 0.15
+_SLOW = 0.3
 _LOW = 0.05
+_FADE_S = 0.2
 _ENOUGH_S = 0.3
-_MOST_PITCH = np.deg2rad(20.0)
+_TIPTOE = np.cos(np.deg2rad(35.0))
 _UP = np.array([0.0, 1.0, 0.0])
 _FORWARD = np.array([0.0, 0.0, 1.0])
 
@@ -30,56 +31,102 @@ def standing(feet: Vectors, frame_rate: float) -> Flags:
         frame_rate: Frames per second.
     """
     speed = np.linalg.norm(differences(feet, 1.0 / frame_rate), axis=-1).max(axis=-1)
-    height = feet[:, 1, 1]
-    return np.asarray((speed < _STILL) & (height < np.percentile(height, 10.0) + _LOW))
+    return np.asarray((speed < _STILL) & _low(feet[:, 1]))
 
 
-def flatten(turned: Quaternions, joint: int, stands: Flags, frame_rate: float) -> Quaternions:
-    """Return a joint's rotations `(T, 4)` pitched so that a standing sole is level at the median.
+def toe_path(figure: Figure, turned: Quaternions, side: str, scale: float) -> Vectors:
+    """Return where a side's toe is `(T, 3)`, file units; made up ahead of the foot where absent."""
+    if side in figure.toes:
+        return figure.toes[side]
+    foot = turned[:, REFERENCE.index(f"{side}Foot")]
+    reach = np.broadcast_to(REFERENCE.offsets[REFERENCE.index(f"{side}Toe")], (len(foot), 3))
+    return figure.at(f"{side}Foot") + quaternion.rotate(foot, reach) / scale
 
-    Too little standing, or a pitch beyond 20 degrees (tiptoes, an unusual rig), leaves it as it is.
+
+def level_soles(
+    turned: Quaternions, side: str, feet: Vectors, stands: Flags, frame_rate: float
+) -> Quaternions:
+    """Return `turned` with foot and toe level while standing and the foot headed along its bone.
+
+    What the joints' axes say about the sole differs from rig to rig and by how markers were placed;
+    the median over standing frames decides, unless it is more than 35 degrees off (tiptoes).
 
     Args:
         turned: `(T, 22, 4)` rotations in the world.
-        joint: Index of a foot or toe.
+        side: `Left` or `Right`.
+        feet: `(T, 2, 3)` ankle and toe, metres.
         stands: `(T,)`.
         frame_rate: Frames per second.
     """
-    rotation = turned[:, joint]
-    if stands.sum() < _ENOUGH_S * frame_rate:
-        return rotation
-    forward = quaternion.rotate(rotation[stands], np.broadcast_to(_FORWARD, (stands.sum(), 3)))
-    pitch = float(np.median(np.arcsin(np.clip(forward[:, 1], -1.0, 1.0))))
-    if abs(pitch) > _MOST_PITCH:
-        return rotation
-    return quaternion.multiply(
-        rotation, quaternion.from_axis_angle((1.0, 0.0, 0.0), np.array(pitch))
+    foot, toe = REFERENCE.indices([f"{side}Foot", f"{side}Toe"])
+    out = turned.copy()
+    enough = stands.sum() >= _ENOUGH_S * frame_rate
+    along = quaternion.rotate(quaternion.conjugate(turned[:, foot]), feet[:, 1] - feet[:, 0])
+    up = _sole(turned[stands, foot]) if enough else _UP
+    turn = _frame(up, np.median(along, axis=0))
+    out[:, foot] = quaternion.multiply(turned[:, foot], turn)
+    up = _sole(turned[stands, toe]) if enough else _UP
+    ahead = _FORWARD
+    if enough:
+        world = quaternion.rotate(out[stands, foot], _rows(_FORWARD, stands.sum()))
+        local = quaternion.rotate(quaternion.conjugate(turned[stands, toe]), world)
+        ahead = np.median(local, axis=0)
+    out[:, toe] = quaternion.multiply(turned[:, toe], _frame(up, ahead))
+    return out
+
+
+def _sole(rotation: Quaternions) -> Vectors:
+    """Return the direction `(3,)` in a joint's axes that points up, at the median over `(T, 4)`."""
+    up = np.median(
+        quaternion.rotate(quaternion.conjugate(rotation), _rows(_UP, len(rotation))), axis=0
     )
+    up = up / np.linalg.norm(up)
+    return up if up[1] > _TIPTOE else _UP
+
+
+def _frame(up: Vectors, ahead: Vectors) -> Quaternions:
+    """Return the turn `(4,)` that takes +Y to `up` and +Z to `ahead`, as far as that is across."""
+    level = quaternion.between(_UP, up)
+    flat = quaternion.rotate(quaternion.conjugate(level), ahead)
+    yaw = np.arctan2(flat[0], flat[2]) if np.hypot(flat[0], flat[2]) > 1e-9 else np.array(0.0)
+    return quaternion.multiply(level, quaternion.from_yaw(np.asarray(yaw)))
+
+
+def _rows(v: Vectors, count: int) -> Vectors:
+    return np.broadcast_to(v, (count, 3))
 
 
 def plant(
-    hips: Vectors, turned: Quaternions, side: str, source_toe: Vectors, stands: Flags
+    hips: Vectors,
+    turned: Quaternions,
+    side: str,
+    feet: Vectors,
+    stands: Flags,
+    frame_rate: float,
 ) -> Quaternions:
-    """Bend a leg so that its toe moves as the source's; return `turned` with new thigh and shin.
+    """Bend a leg so that its toe stays where the source's does; return `turned` with a new leg.
 
-    The toe keeps a constant offset from the source's in the foot's heading: the median of standing.
+    The toe keeps a constant offset from the source's in the foot's heading, the median while the
+    foot stands; away from the ground the leg's own directions hold.
 
     Args:
         hips: `(T, 3)` in the world, metres.
         turned: `(T, 22, 4)` rotations in the world.
         side: `Left` or `Right`.
-        source_toe: `(T, 3)` scaled to metres.
-        stands: `(T,)`.
+        feet: `(T, 2, 3)` ankle and toe of the source, metres.
+        stands: `(T,)` whether the whole foot stands.
+        frame_rate: Frames per second.
     """
     thigh, shin, foot, toe = REFERENCE.indices(
         [side + part for part in ("UpLeg", "Leg", "Foot", "Toe")]
     )
     positions, _ = kinematics.forward(REFERENCE, hips, kinematics.to_local(REFERENCE, turned))
     heading = _heading(turned[:, foot])
-    offset = quaternion.rotate(quaternion.conjugate(heading), positions[:, toe] - source_toe)
-    offset = np.median(offset[stands] if stands.any() else offset, axis=0)
-    target_toe = source_toe + quaternion.rotate(heading, np.broadcast_to(offset, source_toe.shape))
-    target = target_toe - (positions[:, toe] - positions[:, foot])
+    off = positions[:, toe] - feet[:, 1]
+    local = quaternion.rotate(quaternion.conjugate(heading), off)
+    sure = stands if stands.any() else _low(feet[:, 1])
+    kept = quaternion.rotate(heading, _rows(np.median(local[sure], axis=0), len(off)))
+    target = positions[:, foot] + (kept - off) * _near_ground(feet[:, 1], frame_rate)[:, None]
     limb = two_bone_ik(
         positions[:, thigh],
         positions[:, shin],
@@ -87,12 +134,27 @@ def plant(
         turned[:, thigh],
         turned[:, shin],
         target,
-        quaternion.rotate(turned[:, thigh], np.broadcast_to(_FORWARD, target.shape)),
+        quaternion.rotate(turned[:, thigh], _rows(_FORWARD, len(target))),
         buffer=0.001,
     )
     out = turned.copy()
     out[:, thigh], out[:, shin] = limb.upper, limb.lower
     return out
+
+
+def _low(toe: Vectors) -> Flags:
+    return np.asarray(toe[:, 1] < np.percentile(toe[:, 1], 10.0) + _LOW)
+
+
+def _near_ground(toe: Vectors, frame_rate: float) -> Floats:
+    """Return `(T,)` 1 while the toe is planted, fading to 0 over 0.2 s before and after."""
+    speed = np.linalg.norm(differences(toe, 1.0 / frame_rate), axis=-1)
+    planted = _low(toe) & (speed < _SLOW)
+    fade = max(1, round(_FADE_S * frame_rate))
+    window = np.hanning(2 * fade + 1)
+    held = np.convolve(planted, np.ones(2 * fade + 1), "same")[: len(toe)] > 0.5
+    padded = np.pad(held.astype(np.float64), fade, mode="edge")
+    return np.asarray(np.convolve(padded, window / window.sum(), "valid"))
 
 
 def _heading(foot: Quaternions) -> Quaternions:

@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Quaternions
-from stridewire.motion.skeleton import REFERENCE
+from stridewire.motion.skeleton import REFERENCE, Skeleton
+from stridewire_engine.building.joint_names import bare_names
 
 _AXES = {
     sign + letter: factor * np.eye(3)[index]
@@ -35,7 +36,18 @@ class Profile:
     """Source joint by reference joint."""
     axes: Mapping[str, Quaternions] = field(default_factory=dict)
     """By reference joint the turn from the reference's T-pose to the joint's own axes; where absent
-    the zero pose of the file is the rest pose."""
+    the file's zero pose tells, or its average one."""
+    up: str | None = None
+    """`Y` or `Z`; None where the motion tells."""
+
+    def source_joints(self, skeleton: Skeleton) -> dict[str, str]:
+        """Return the skeleton's full joint names by reference joint."""
+        full = dict(zip(bare_names(skeleton), skeleton.names, strict=True))
+        return {part: full.get(name, name) for part, name in self.joints.items()}
+
+    def covers(self, skeleton: Skeleton) -> bool:
+        """Return whether the skeleton has all joints that the profile names."""
+        return set(self.source_joints(skeleton).values()) <= set(skeleton.names)
 
 
 def load_profile(path: Path) -> Profile:
@@ -60,18 +72,21 @@ def _parse(text: str, where: str) -> Profile:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ProfileError(f"{where}: {error}; expected TOML") from None
-    unknown = sorted(set(table) - {"name", "title", "joints", "axes"})
+    unknown = sorted(set(table) - {"name", "title", "up", "joints", "axes"})
     joints = table.get("joints")
     if unknown or not isinstance(table.get("name"), str) or not isinstance(joints, dict):
         wrong = f"unknown key {unknown[0]!r}" if unknown else "`name` or `[joints]` is missing"
-        raise ProfileError(f"{where}: {wrong}; expected name, title, [joints] and [axes]")
+        raise ProfileError(f"{where}: {wrong}; expected name, title, up, [joints] and [axes]")
     _check_joints(joints, where)
     axes: dict[str, Quaternions] = {}
     for group, entry in table.get("axes", {}).items():
         turn = _axes(entry, f"{where}: axes.{group}")
         _check_joints(dict.fromkeys(entry["joints"], ""), f"{where}: axes.{group}")
         axes.update(dict.fromkeys(entry["joints"], turn))
-    return Profile(table["name"], table.get("title", table["name"]), joints, axes)
+    up = table.get("up")
+    if up not in (None, "Y", "Z"):
+        raise ProfileError(f'{where}: up = {up!r}; expected "Y" or "Z"')
+    return Profile(table["name"], table.get("title", table["name"]), joints, axes, up)
 
 
 def _check_joints(joints: Mapping[str, Any], where: str) -> None:
