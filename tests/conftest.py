@@ -13,6 +13,9 @@ from stridewire.motion import quaternion
 from stridewire.motion.array_types import Quaternions
 from stridewire.motion.clip import Clip, Pose, TagSpan
 from stridewire.motion.skeleton import REFERENCE
+from stridewire_engine.building import build_library
+from stridewire_engine.building.synthetic import synthetic_clips
+from stridewire_engine.library import Library
 
 # the machine decides how long an example takes, and a seed which examples there are
 settings.register_profile("suite", deadline=None, derandomize=True, database=None)
@@ -74,6 +77,15 @@ def swaying_clip(rng: np.random.Generator) -> Clip:
         (TagSpan("walk", 0, 121), TagSpan("turn-left", 10, 40), TagSpan("stop", 100, 121)),
         "test",
     )
+
+
+@pytest.fixture(scope="session")
+def small_library(tmp_path_factory: pytest.TempPathFactory) -> Library:
+    """Return a library of a few synthetic clips and their mirrored copies."""
+    wanted = ("idle-", "walk-1.4", "walk-turn", "run-3", "start-walk", "stop")
+    clips = [clip for clip in synthetic_clips() if clip.name.startswith(wanted)]
+    folder = tmp_path_factory.mktemp("library") / "small"
+    return build_library(clips, folder, name="small", synthetic=True, licence="none")
 
 
 @pytest.fixture(scope="session")

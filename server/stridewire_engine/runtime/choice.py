@@ -88,7 +88,8 @@ def choose(
     stay = matcher.costs(query, weights, playing[:, None]).sum(axis=-1)[:, 0]
     bias = settings.continuing_bias * matcher.typical_cost
     must = np.isin(reason[searching], (TransitionReason.CLIP_END, TransitionReason.START))
-    jump = np.isfinite(found.costs[:, 0]) & (must | (found.costs[:, 0] + bias < stay))
+    better = found.costs[:, 0] + bias < stay * (1.0 - settings.least_improvement)
+    jump = np.isfinite(found.costs[:, 0]) & (must | better)
     _restart_clocks(state, searching, settings)
     target = found.rows[jump, 0]
     clip = matcher.library.clip_of[target]

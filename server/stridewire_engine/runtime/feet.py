@@ -146,13 +146,10 @@ def _lock(
     point[..., 1] = state.root_position[:, None, 1] + toe_height
     anchor = np.where(ends[..., None], toe, np.where(begins[..., None], point, 0.0))
     changed = (begins | ends)[..., None]
-    # whichever way the lock goes, the toe is shown where it was and moves on as it did
-    before = np.where(state.locked[..., None], 0.0, velocity)
-    after = np.where(ends[..., None], velocity, 0.0)
     state.toe_offset[...] = np.where(changed, shown - anchor, offset)
-    state.toe_offset_velocity[...] = np.where(
-        changed, offset_velocity + before - after, offset_velocity
-    )
+    # a foot that is let go starts from rest; one that lands stops dead, as a shoe on the ground does
+    at_rest = np.where(ends[..., None], offset_velocity - velocity, 0.0)
+    state.toe_offset_velocity[...] = np.where(changed, at_rest, offset_velocity)
     state.lock_point[...] = np.where(begins[..., None], point, state.lock_point)
     state.locked[...] = (state.locked | begins) & ~ends
     state.planted[...] = planted

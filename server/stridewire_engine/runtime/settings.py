@@ -19,8 +19,10 @@ class TickSettings:
     """Change of the desired velocity since the last search, m/s, that forces one."""
     facing_jump: float = 0.5
     """Change of the goal heading since the last search, radians, that forces one."""
-    continuing_bias: float = 0.25
+    continuing_bias: float = 0.5
     """A jump must be better than staying by so many of the library's typical costs."""
+    least_improvement: float = 0.2
+    """And by this share of the cost of staying."""
     clip_end_margin: float = 0.1
     """A clip is left at the latest so many seconds before its end."""
     root_halflife: float = 0.12
