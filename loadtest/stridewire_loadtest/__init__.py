@@ -1,0 +1,1 @@
+"""The load test: an open-loop generator, scenarios, reports."""
