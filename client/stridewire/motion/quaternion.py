@@ -120,6 +120,40 @@ def to_scaled_axis(q: Quaternions) -> Vectors:
     return (v * np.where(sine < _SMALL_ANGLE, 2.0, angle / safe)).astype(q.dtype)
 
 
+def scaled_axis_to_velocity(v: Vectors, rate: Vectors) -> Vectors:
+    """Return the angular velocity of `from_scaled_axis(v)` while `v` changes at `rate`.
+
+    The left Jacobian of SO(3): `rate + (1 - cos a)/a^2 v x rate + (a - sin a)/a^3 v x (v x rate)`.
+
+    Args:
+        v: `(..., 3)` rotation vectors of angle a, radians.
+        rate: `(..., 3)` their rates of change, rad/s.
+    """
+    angle = np.sqrt(np.sum(v * v, axis=-1, keepdims=True))
+    safe = np.maximum(angle, 1e-2)
+    first = np.where(angle < 1e-2, 0.5, (1.0 - np.cos(safe)) / safe**2)
+    second = np.where(angle < 1e-2, 1.0 / 6.0, (safe - np.sin(safe)) / safe**3)
+    once = cross(v, rate)
+    return (rate + first * once + second * cross(v, once)).astype(rate.dtype)
+
+
+def scaled_axis_from_velocity(v: Vectors, velocity: Vectors) -> Vectors:
+    """Return the rate of change of `v` that gives an angular velocity: the inverse of the above.
+
+    `velocity - v x velocity / 2 + (1/a^2 - cot(a/2)/(2a)) v x (v x velocity)`.
+
+    Args:
+        v: `(..., 3)` rotation vectors of angle a below a full turn, radians.
+        velocity: `(..., 3)` angular velocities, rad/s.
+    """
+    angle = np.sqrt(np.sum(v * v, axis=-1, keepdims=True))
+    safe = np.maximum(angle, 1e-1)
+    exact = 1.0 / safe**2 - 1.0 / (2.0 * safe * np.tan(0.5 * safe))
+    once = cross(v, velocity)
+    second = np.where(angle < 1e-1, 1.0 / 12.0, exact)
+    return (velocity - 0.5 * once + second * cross(v, once)).astype(velocity.dtype)
+
+
 def from_axis_angle(axis: Vectors | Sequence[float], angle: Floats | float) -> Quaternions:
     """Turn by `angle` radians about a unit `axis`.
 

@@ -147,7 +147,7 @@ def _lock(
     anchor = np.where(ends[..., None], toe, np.where(begins[..., None], point, 0.0))
     changed = (begins | ends)[..., None]
     state.toe_offset[...] = np.where(changed, shown - anchor, offset)
-    # a foot that is let go starts from rest; one that lands stops dead, as a shoe on the ground does
+    # a foot that is let go starts from rest; one that lands stops dead, as shoes do
     at_rest = np.where(ends[..., None], offset_velocity - velocity, 0.0)
     state.toe_offset_velocity[...] = np.where(changed, at_rest, offset_velocity)
     state.lock_point[...] = np.where(begins[..., None], point, state.lock_point)

@@ -28,14 +28,17 @@ class SpringInertialization:
         state.hips += source.hips - target.hips
         state.hips_velocity += source.hips_velocity - target.hips_velocity
         offset = quaternion.from_scaled_axis(state.rotations)
-        shown_velocity = state.angular_velocity + quaternion.rotate(offset, source.angular_velocity)
+        shown_velocity = quaternion.scaled_axis_to_velocity(
+            state.rotations, state.angular_velocity
+        ) + quaternion.rotate(offset, source.angular_velocity)
         shown = quaternion.multiply(offset, source.rotations)
         new_offset = quaternion.absolute(
             quaternion.multiply(shown, quaternion.conjugate(target.rotations))
         )
         state.rotations[...] = quaternion.to_scaled_axis(new_offset)
-        state.angular_velocity[...] = shown_velocity - quaternion.rotate(
-            new_offset, target.angular_velocity
+        state.angular_velocity[...] = quaternion.scaled_axis_from_velocity(
+            state.rotations,
+            shown_velocity - quaternion.rotate(new_offset, target.angular_velocity),
         )
 
     def apply(

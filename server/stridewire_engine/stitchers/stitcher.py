@@ -34,7 +34,7 @@ class StitchState:
     rotations: Vectors
     """`(N, J, 3)` offsets as scaled axes, turned after the sampled rotation, radians."""
     angular_velocity: Vectors
-    """`(N, J, 3)` their rate of change."""
+    """`(N, J, 3)` rate of change of the scaled axes, rad/s."""
 
     def take(self, rows: slice | Indices) -> "StitchState":
         """Return the rows: a view for a slice, a copy for indices."""

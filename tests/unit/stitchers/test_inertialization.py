@@ -53,15 +53,15 @@ def test_value_and_rate_continue(rng: np.random.Generator) -> None:
     assert np.allclose((later_hips - hips) / TINY[0], source.hips_velocity, atol=1e-2)
 
 
-def test_angular_rate_continues_for_small_offsets(rng: np.random.Generator) -> None:
-    """With offsets of a few degrees the angular velocity goes on, too."""
+def test_angular_rate_continues(rng: np.random.Generator) -> None:
+    """The angular velocity goes on, too, even across large differences."""
     stitcher, state = SpringInertialization(), empty()
-    source, target = random_motion(rng, 0.03), random_motion(rng, 0.03)
+    source, target = random_motion(rng), random_motion(rng)
     stitcher.begin(state, source, target)
     soon = advance(target, TINY[0])
     _, before = stitcher.apply(state, target.hips, target.rotations, np.zeros(N))
     _, after = stitcher.apply(state, soon.hips, soon.rotations, TINY)
-    assert np.allclose(angles(after, before) / TINY[0], source.angular_velocity, atol=0.2)
+    assert np.allclose(angles(after, before) / TINY[0], source.angular_velocity, atol=1e-2)
 
 
 def test_a_second_jump_in_the_middle_continues_what_is_shown(rng: np.random.Generator) -> None:
