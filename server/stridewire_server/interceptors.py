@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 import grpc
+from google.protobuf.message import DecodeError
 
 from stridewire._codec.status import DETAILS_KEY, encode_details
 from stridewire._errors import StridewireError
@@ -40,6 +41,10 @@ def _guarded(method: Method, name: str) -> Method:
             await context.abort(grpc.StatusCode[error.code], str(error), metadata)
         except grpc.aio.AbortError:
             raise
+        except DecodeError:
+            await context.abort(
+                grpc.StatusCode.INVALID_ARGUMENT, "the bytes are no message of this method"
+            )
         except Exception:
             fault = uuid.uuid4().hex[:12]
             log.exception("fault %s in %s", fault, name)

@@ -1,7 +1,5 @@
 """The server process: services, health and reflection around one runtime."""
 
-import logging
-
 import grpc
 from grpc_health.v1 import health, health_pb2, health_pb2_grpc
 from grpc_reflection.v1alpha import reflection
@@ -29,7 +27,8 @@ from stridewire_server.services.match import MatchService
 from stridewire_server.settings import ServerSettings
 from stridewire_server.ticker import Ticker
 
-log = logging.getLogger("stridewire.server")
+_GRACE_S = 0.5
+"""For calls that are still open when the time of open sessions is up."""
 
 _READY = (
     animation_pb2.DESCRIPTOR.services_by_name["AnimationService"].full_name,
@@ -73,7 +72,8 @@ class AnimationServer:
         """Stop in good order: no longer healthy, open sessions warned and awaited, then the end."""
         await self._set_health(health_pb2.HealthCheckResponse.NOT_SERVING)
         await self._animation.drain()
-        await self._server.stop(grace=0.5)
+        await self._server.stop(grace=_GRACE_S)
+        await self._animation.wait_until_empty(_GRACE_S)
         self._ticker.shut_down()
 
     async def wait(self) -> None:

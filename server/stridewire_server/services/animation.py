@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from grpc.aio import EOF  # type: ignore[attr-defined]
@@ -53,9 +53,12 @@ class AnimationService(AnimationServiceServicer):
                     self._settings.drain_s,
                 )
             )
-        await asyncio.wait(
-            {asyncio.ensure_future(self._empty.wait())}, timeout=self._settings.drain_s
-        )
+        await self.wait_until_empty(self._settings.drain_s)
+
+    async def wait_until_empty(self, timeout_s: float) -> None:
+        """Wait until no session is open, or until the time is up."""
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._empty.wait(), timeout_s)
 
     @contextmanager
     def _place(self) -> Iterator[None]:

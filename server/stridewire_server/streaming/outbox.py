@@ -1,4 +1,4 @@
-"""The outbox of a stream: credits for frames, and a one-slot mailbox behind them.
+"""The outbox of a stream: as many frames as the reader has credits for, and a mailbox behind them.
 
 A slow reader holds as many frames unacknowledged as it has credits. Behind them waits a single one,
 always the newest, which tells what its skipped predecessors told.
@@ -12,40 +12,49 @@ from stridewire._errors import Violation
 from stridewire._messages import Frame, Notice, Opened, ServerMessage, StreamError
 from stridewire_server.streaming.skipping import skip
 
-MAX_WAITING = 64
-"""Messages other than frames that wait for a slow reader; later errors only add to a count."""
+MAX_WAITING_ERRORS = 64
+"""Errors that wait for a slow reader; later ones only add to a count."""
+
+WINDOW_WITHOUT_CREDITS = 30
+"""Frames that wait to be written to a reader that gives no credits."""
 
 
 class Outbox:
-    """What waits to be written; one task takes, others put."""
+    """What waits to be written; one task takes, others put.
+
+    Args:
+        credits_of_reader: Frames that may be unacknowledged; 0 means that none are acknowledged.
+    """
 
     def __init__(self, credits_of_reader: int) -> None:
         self._credits = credits_of_reader
-        self._messages: deque[Opened | StreamError | Notice] = deque()
-        self._frame: Frame | None = None
-        self._unacknowledged: deque[int] = deque()
+        self._waiting: deque[ServerMessage] = deque()
+        self._errors: deque[StreamError] = deque()
+        self._under_way: deque[int] = deque()
+        self._mailbox: Frame | None = None
         self._last_sent = 0
         self._finished = False
         self._changed = asyncio.Event()
 
-    def put(self, message: Opened | StreamError | Notice) -> None:
-        """Put a message that is not skipped."""
-        last = self._messages[-1] if self._messages else None
-        if (
-            len(self._messages) >= MAX_WAITING
-            and isinstance(message, StreamError)
-            and isinstance(last, StreamError)
-        ):
-            more = last.more + len(message.violations) + message.more
-            self._messages[-1] = replace(last, more=more)
+    def put(self, message: Opened | Notice) -> None:
+        """Put a message that comes after what waits already."""
+        self._waiting.append(message)
+        self._changed.set()
+
+    def report(self, error: StreamError) -> None:
+        """Put an error; errors overtake frames."""
+        if len(self._errors) < MAX_WAITING_ERRORS:
+            self._errors.append(error)
         else:
-            self._messages.append(message)
+            last = self._errors[-1]
+            more = last.more + len(error.violations) + error.more
+            self._errors[-1] = replace(last, more=more)
         self._changed.set()
 
     def offer(self, frame: Frame) -> None:
-        """Put a frame in the place of the one that waits, if any."""
-        self._frame = frame if self._frame is None else skip(self._frame, frame)
-        self._changed.set()
+        """Put a frame: to be written where there is a credit, else into the mailbox."""
+        self._mailbox = frame if self._mailbox is None else skip(self._mailbox, frame)
+        self._empty_mailbox()
 
     def acknowledge(self, last_frame: int) -> Violation | None:
         """Take note that a frame and all before it were taken; returns what is wrong with that."""
@@ -54,34 +63,45 @@ class Outbox:
                 "step.last_frame",
                 f"{last_frame} was not sent yet; the newest frame sent is {self._last_sent}",
             )
-        while self._unacknowledged and self._unacknowledged[0] <= last_frame:
-            self._unacknowledged.popleft()
-        self._changed.set()
+        if self._credits:
+            self._forget(last_frame)
         return None
 
     def finish(self) -> None:
         """Put nothing more; what waits is still handed out, credits or not."""
         self._finished = True
-        self._changed.set()
+        self._empty_mailbox()
 
     async def take(self) -> ServerMessage | None:
         """Wait for what is to be written next; None at the end."""
         while True:
-            if self._messages:
-                return self._messages.popleft()
-            if self._frame is not None and self._may_send():
-                return self._send_frame(self._frame)
+            if self._errors:
+                return self._errors.popleft()
+            if self._waiting:
+                return self._sent(self._waiting.popleft())
             if self._finished:
                 return None
             self._changed.clear()
             await self._changed.wait()
 
-    def _may_send(self) -> bool:
-        return self._credits == 0 or self._finished or len(self._unacknowledged) < self._credits
+    def _empty_mailbox(self) -> None:
+        """Let the frame in the mailbox be written, where the reader has room for it."""
+        room = (self._credits or WINDOW_WITHOUT_CREDITS) - len(self._under_way)
+        if self._mailbox is not None and (room > 0 or self._finished):
+            self._under_way.append(self._mailbox.frame)
+            self._waiting.append(self._mailbox)
+            self._mailbox = None
+        self._changed.set()
 
-    def _send_frame(self, frame: Frame) -> Frame:
-        self._frame = None
-        self._last_sent = frame.frame
-        if self._credits:
-            self._unacknowledged.append(frame.frame)
-        return frame
+    def _sent(self, message: ServerMessage) -> ServerMessage:
+        if isinstance(message, Frame):
+            self._last_sent = message.frame
+            if not self._credits:
+                self._forget(message.frame)
+        return message
+
+    def _forget(self, frame: int) -> None:
+        """Give the credits of a frame and all before it back."""
+        while self._under_way and self._under_way[0] <= frame:
+            self._under_way.popleft()
+        self._empty_mailbox()

@@ -121,4 +121,4 @@ class AnimateStream:
         found = (*violations, *error.violations)
         if found:
             more = error.more + max(0, len(found) - MAX_VIOLATIONS)
-            self._outbox.put(replace(error, violations=found[:MAX_VIOLATIONS], more=more))
+            self._outbox.report(replace(error, violations=found[:MAX_VIOLATIONS], more=more))

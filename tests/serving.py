@@ -1,0 +1,164 @@
+"""A real server for tests: one event loop in a thread, a small synthetic library, free ports."""
+
+import asyncio
+import threading
+import time
+from collections.abc import Callable, Coroutine, Iterator, Sequence
+from typing import Any, TypeVar
+
+import grpc
+import pytest
+
+from stridewire import Client
+from stridewire._messages import Frame, Limits, Step, StreamError
+from stridewire.v1 import animation_pb2 as pb
+from stridewire.v1.animation_pb2_grpc import AnimationServiceStub
+from stridewire_engine.building import build_library
+from stridewire_engine.building.synthetic import synthetic_clips
+from stridewire_engine.library import Library
+from stridewire_engine.runtime import Runtime, Session
+from stridewire_server.server import AnimationServer
+from stridewire_server.settings import ServerSettings
+
+T = TypeVar("T")
+Serve = Callable[..., str]
+
+CLIPS = 10
+DEADLINE_S = 20.0
+"""Longest wait for what is expected to happen soon; generous, for slow machines."""
+
+
+class HeldRuntime(Runtime):
+    """Holds every tick of sessions of two characters until it is let go; notes who shared it."""
+
+    def __init__(self, library: Library) -> None:
+        super().__init__([library])
+        self.shared: list[int] = []
+        self.inside = threading.Event()
+        self.go = threading.Event()
+
+    def advance(
+        self, due: Sequence[tuple[Session, Step]]
+    ) -> list[tuple[Frame, StreamError | None]]:
+        """Advance, later."""
+        if len(due[0][0]) == 2:
+            self.shared.append(len(due))
+            self.inside.set()
+            self.go.wait(DEADLINE_S)
+        return super().advance(due)
+
+
+class LoopThread:
+    """One event loop for all servers of a run: gRPC's poller binds to the first one it sees."""
+
+    def __init__(self) -> None:
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+        self._thread.start()
+
+    def call(self, work: Coroutine[Any, Any, T]) -> T:
+        """Run a coroutine in the loop and wait for it."""
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result(DEADLINE_S)
+
+    def stop(self) -> None:
+        """End the loop."""
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join(DEADLINE_S)
+        self._loop.close()
+
+
+@pytest.fixture(scope="session")
+def loop_thread() -> Iterator[LoopThread]:
+    """Return the event loop in which servers run."""
+    thread = LoopThread()
+    yield thread
+    thread.stop()
+
+
+@pytest.fixture(scope="session")
+def small_library(tmp_path_factory: pytest.TempPathFactory) -> Library:
+    """Return a library of a few synthetic clips."""
+    return build_library(
+        synthetic_clips()[:CLIPS],
+        tmp_path_factory.mktemp("library") / "small",
+        name="small",
+        synthetic=True,
+        licence="Apache-2.0",
+        credit="Generated for tests.",
+        mirror=False,
+    )
+
+
+@pytest.fixture(scope="session")
+def address(loop_thread: LoopThread, small_library: Library) -> Iterator[str]:
+    """Return the address of a server that the whole run shares."""
+    server, bound = _start(loop_thread, Runtime([small_library]), ServerSettings("127.0.0.1:0"))
+    yield bound
+    loop_thread.call(server.stop())
+
+
+@pytest.fixture
+def serve(loop_thread: LoopThread, small_library: Library) -> Iterator[Serve]:
+    """Return a starter of servers of a test's own; `runtime` and limits can be given."""
+    servers = []
+
+    def start(runtime: Runtime | None = None, limits: Limits | None = None, **given: Any) -> str:
+        runtime = runtime or Runtime([small_library], limits=limits)
+        settings = ServerSettings("127.0.0.1:0", drain_s=0.2, **given)
+        server, bound = _start(loop_thread, runtime, settings)
+        servers.append(server)
+        return bound
+
+    yield start
+    for server in servers:
+        loop_thread.call(server.stop())
+
+
+@pytest.fixture
+def client(address: str) -> Iterator[Client]:
+    """Return a client of the shared server."""
+    with Client(address, timeout_s=DEADLINE_S) as opened:
+        yield opened
+
+
+@pytest.fixture
+def raw_stream(address: str) -> Iterator[Callable[..., list[pb.AnimateResponse]]]:
+    """Return a caller of Animate with the plain stub: sends messages, half-closes, reads all."""
+    with grpc.insecure_channel(address) as channel:
+        animate = AnimationServiceStub(channel).Animate
+
+        def call(*requests: pb.AnimateRequest) -> list[pb.AnimateResponse]:
+            return list(animate(iter(requests), timeout=DEADLINE_S))
+
+        yield call
+
+
+def opening(characters: int = 1, **given: Any) -> pb.AnimateRequest:
+    """Return an Open for characters with ids from 0."""
+    specs = [pb.CharacterSpec(id=i) for i in range(characters)]
+    return pb.AnimateRequest(open=pb.Open(characters=specs, **given))
+
+
+def stepping(**given: Any) -> pb.AnimateRequest:
+    """Return a Step of a 60th of a second."""
+    return pb.AnimateRequest(step=pb.Step(**{"dt_s": 1.0 / 60.0, **given}))
+
+
+def eventually(condition: Callable[[], bool], within_s: float = DEADLINE_S) -> bool:
+    """Wait until a condition holds; false where it does not in time."""
+    end = time.monotonic() + within_s
+    while not condition():
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+def _start(
+    thread: LoopThread, runtime: Runtime, settings: ServerSettings
+) -> tuple[AnimationServer, str]:
+    async def start() -> tuple[AnimationServer, str]:
+        server = AnimationServer(runtime, settings)
+        return server, await server.start()
+
+    return thread.call(start())
