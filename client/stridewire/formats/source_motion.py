@@ -1,7 +1,7 @@
 """What a motion file says before anything is converted: its own skeleton, units and axes."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -38,7 +38,7 @@ class SourceMotion:
     """`(T, J, 3)` offsets from the parents by frame, file units; None where the skeleton's hold."""
     metres_per_unit: float | None = None
     """None where the file does not say."""
-    notes: tuple[str, ...] = field(default=())
+    notes: tuple[str, ...] = ()
     """What was odd about the file and how it was read."""
 
     def __len__(self) -> int:
@@ -48,6 +48,16 @@ class SourceMotion:
     def name(self) -> str:
         """Name of the file without its ending."""
         return self.path.stem
+
+    def after(self, frames: int) -> "SourceMotion":
+        """Return the same motion without its first frames."""
+        moving = self.translations
+        return replace(
+            self,
+            root_positions=self.root_positions[frames:],
+            rotations=self.rotations[frames:],
+            translations=None if moving is None else moving[frames:],
+        )
 
     def global_poses(self) -> tuple[Vectors, Quaternions]:
         """Return positions `(T, J, 3)` in file units and rotations `(T, J, 4)` in the world."""

@@ -1,25 +1,31 @@
 """Importing: motion files to cleaned, retargeted, tagged clips, or a sentence that says why not."""
 
+import multiprocessing
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from stridewire.formats.reading import read_motion
+from stridewire.formats.reading import READERS, read_motion
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion.clip import Clip
-from stridewire_engine.building.cleaning import clean
+from stridewire_engine.building.cleaning import clean, leading_pose, oddities
 from stridewire_engine.building.joint_mapping import map_joints
 from stridewire_engine.building.profiles import Profile, shipped_profiles
 from stridewire_engine.building.retarget import fits, retarget
+from stridewire_engine.building.sidecars import Sidecar, Sidecars, Splits
 from stridewire_engine.building.tagging import tag
 
-ENDINGS = (".bvh", ".amc")
-"""Endings of the files that can be imported."""
-
 ACCLAIM_RATE = 120.0
-"""Frames per second where the file says nothing: most AMC files are CMU's."""
+"""Frames per second where neither file nor index says it: most AMC files are CMU's."""
 
-_FEWEST_FRAMES = 10
+SLOWEST, FASTEST = 20.0, 240.0
+"""Frame rates that can be imported; frames per second."""
+
+_SHORTEST_S = 0.25
+_FEW = 8
 
 
 class RefusedError(ValueError):
@@ -37,62 +43,114 @@ class Outcome:
     """Why it was refused."""
     notes: tuple[str, ...] = ()
     """What was odd about it."""
+    profile: str = ""
+    """Name of the profile that mapped its joints."""
 
 
-def motion_files(inputs: Iterable[Path]) -> list[Path]:
-    """Return the motion files among files and in folders, sorted, each once."""
+@dataclass(frozen=True)
+class _Job:
+    path: Path
+    name: str
+    sidecar: Sidecar
+
+
+def motion_files(
+    inputs: Iterable[Path], split: str | None = None, splits: Splits | None = None
+) -> list[Path]:
+    """Return the motion files among files and in folders, sorted, each once.
+
+    Args:
+        inputs: Files, taken whatever their ending, and folders, searched for known endings.
+        split: Take only files of this split.
+        splits: Which files are in which split.
+
+    Raises:
+        SidecarError: If an index is malformed.
+    """
     found: dict[Path, None] = {}
+    sidecars = Sidecars()
     for path in inputs:
         inside = sorted(path.rglob("*")) if path.is_dir() else [path]
         for file in inside:
-            if not path.is_dir() or (file.suffix.lower() in ENDINGS and file.is_file()):
+            known = file.suffix.lower() in READERS and file.is_file()
+            if path.is_dir() and not known:
+                continue
+            if splits is None or splits.of(file, sidecars.of(file)) == split:
                 found[file] = None
     return list(found)
 
 
-def import_files(paths: Sequence[Path]) -> Iterator[Outcome]:
-    """Import files one by one; a bad one is refused and does not stop the others."""
-    profiles = shipped_profiles()
+def import_files(
+    paths: Sequence[Path],
+    *,
+    profiles: Sequence[Profile] = (),
+    frame_rate: float | None = None,
+    jobs: int = 1,
+) -> Iterator[Outcome]:
+    """Import files in order; a bad one is refused and does not stop the others.
+
+    Args:
+        paths: Files.
+        profiles: Tried before the shipped ones.
+        frame_rate: Frames per second of all files, instead of what they or their indexes say.
+        jobs: Processes that work at once.
+
+    Raises:
+        SidecarError: If an index is malformed.
+    """
+    sidecars = Sidecars()
     names = clip_names(paths)
-    for path in paths:
-        try:
-            yield import_file(path, profiles, names[path])
-        except (ValueError, OSError) as error:
-            yield Outcome(path, None, str(error))
+    work = [_Job(path, names[path], sidecars.of(path)) for path in paths]
+    run = partial(_import_one, (*profiles, *shipped_profiles()), frame_rate)
+    if jobs == 1 or len(work) < _FEW:
+        yield from map(run, work)
+        return
+    # spawned, since a fork of a process with threads may hang
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(jobs, mp_context=context) as pool:
+        yield from pool.map(run, work)
 
 
-def import_file(path: Path, profiles: Sequence[Profile], name: str) -> Outcome:
+def import_file(
+    path: Path,
+    name: str | None = None,
+    *,
+    profiles: Sequence[Profile] = (),
+    frame_rate: float | None = None,
+    sidecar: Sidecar | None = None,
+) -> Outcome:
     """Import one file.
+
+    Args:
+        path: The file.
+        name: Of the clip; the file's by default.
+        profiles: Tried before the shipped ones.
+        frame_rate: Frames per second, instead of what the file or its index says.
+        sidecar: What an index says; by default looked up beside the file.
 
     Raises:
         ValueError: If it cannot be read or is not a human's motion.
         OSError: If it cannot be opened.
     """
+    sidecar = Sidecars().of(path) if sidecar is None else sidecar
     source = read_motion(path)
-    profile = find_profile(source, profiles)
-    if len(source) < _FEWEST_FRAMES:
-        raise RefusedError(f"{path}: {len(source)} frames; expected at least {_FEWEST_FRAMES}")
-    frame_rate = source.frame_rate or ACCLAIM_RATE
-    motion = retarget(source, profile, frame_rate)
+    rate, notes = _frame_rate(source, frame_rate, sidecar)
+    cut = leading_pose(source.rotations)
+    if cut:
+        source = source.after(cut)
+        notes.append(f"{cut} frame(s) of a rest pose before the motion were cut")
+    if len(source) < _SHORTEST_S * rate:
+        raise RefusedError(
+            f"{path}: {len(source)} frames at {rate:g} per second; expected at least "
+            f"{_SHORTEST_S:g} s"
+        )
+    profile = find_profile(source, profiles or shipped_profiles())
+    motion = retarget(source, profile, rate)
     floor = 0.0 if motion.unchanged else None
-    clip = clean(name, motion.hips, motion.rotations, frame_rate, path.name, floor)
-    return Outcome(path, tag(clip, path.stem), notes=(*source.notes, *motion.notes))
-
-
-def clip_names(paths: Sequence[Path]) -> dict[Path, str]:
-    """Name clips after their files; files of one name get their folder's in front."""
-    names: dict[Path, str] = {}
-    stems = [path.stem for path in paths]
-    for path in paths:
-        name = path.stem if stems.count(path.stem) == 1 else f"{path.parent.name}-{path.stem}"
-        taken = set(names.values())
-        names[path] = next(n for n in _numbered(name) if n not in taken)
-    return names
-
-
-def _numbered(name: str) -> Iterator[str]:
-    yield name
-    yield from (f"{name}-{number}" for number in range(2, 10**6))
+    clip = clean(name or path.stem, motion.hips, motion.rotations, rate, path.name, floor)
+    notes += [*motion.notes, *oddities(clip)]
+    tagged = tag(clip, f"{path.stem} {sidecar.words}")
+    return Outcome(path, tagged, notes=(*source.notes, *notes), profile=profile.name)
 
 
 def find_profile(source: SourceMotion, profiles: Sequence[Profile]) -> Profile:
@@ -104,4 +162,51 @@ def find_profile(source: SourceMotion, profiles: Sequence[Profile]) -> Profile:
     for profile in sorted(profiles, key=lambda p: (-len(p.joints), not p.axes)):
         if fits(source, profile):
             return profile
-    return Profile("unknown", source.path.name, map_joints(source.skeleton).joints)
+    return Profile("by names", source.path.name, map_joints(source.skeleton).joints)
+
+
+def clip_names(paths: Sequence[Path]) -> dict[Path, str]:
+    """Name clips after their files; files of one name get their folder's in front."""
+    names: dict[Path, str] = {}
+    taken: set[str] = set()
+    stems = Counter(path.stem for path in paths)
+    for path in paths:
+        alone = stems[path.stem] == 1
+        base = path.stem if alone else f"{path.resolve().parent.name}-{path.stem}"
+        name, number = base, 1
+        while name in taken:
+            number += 1
+            name = f"{base}-{number}"
+        names[path] = name
+        taken.add(name)
+    return names
+
+
+def _import_one(profiles: Sequence[Profile], frame_rate: float | None, job: _Job) -> Outcome:
+    try:
+        return import_file(
+            job.path, job.name, profiles=profiles, frame_rate=frame_rate, sidecar=job.sidecar
+        )
+    except (ValueError, OSError) as error:
+        text = str(error)
+        return Outcome(job.path, None, text if str(job.path) in text else f"{job.path}: {text}")
+
+
+def _frame_rate(
+    source: SourceMotion, given: float | None, sidecar: Sidecar
+) -> tuple[float, list[str]]:
+    """Return the frame rate and a note where it is not the file's own."""
+    rate = given or sidecar.frame_rate or source.frame_rate or ACCLAIM_RATE
+    if not SLOWEST <= rate <= FASTEST:
+        raise RefusedError(
+            f"{source.path}: {rate:g} frames per second; expected {SLOWEST:g} to {FASTEST:g} "
+            "(if the file is wrong, give the true rate with --fps)"
+        )
+    if given or rate == source.frame_rate:
+        return rate, []
+    if sidecar.frame_rate is None:
+        return rate, [f"says no frame rate; {rate:g} frames per second were assumed"]
+    if source.frame_rate is None or abs(rate - source.frame_rate) < 0.01 * rate:
+        return rate, []
+    said = f"says {source.frame_rate:g} frames per second, its index {rate:g}, which holds"
+    return rate, [said]

@@ -28,11 +28,21 @@ RUN_SPEED = 3.2
 TURN_RATE = np.deg2rad(45.0)
 """From this on a frame turns; radians per second."""
 
-FILE_WORDS = (
-    *("aiming", "climb", "crouch", "dance", "fall", "fight", "getup", "ground", "jump", "kick"),
-    *("obstacles", "punch", "push", "sit", "sneak", "sport", "stumble"),
-)
-"""Words of file names that become tags of the whole clip."""
+FILE_WORDS = {
+    "aiming": ("aim",),
+    "climb": ("climb", "ladder"),
+    "crouch": ("crouch", "duck"),
+    "dance": ("danc", "salsa", "ballet", "pirouette"),
+    "fall": ("fall", "stumble", "trip"),
+    "fight": ("fight", "punch", "kick", "box", "karate", "sword"),
+    "jump": ("jump", "hop", "leap"),
+    "obstacles": ("obstacle",),
+    "push": ("push",),
+    "sit": ("sit", "chair"),
+    "sneak": ("sneak", "creep"),
+    "sport": ("sport", "basketball", "soccer", "football", "swing", "throw"),
+}
+"""Tags of the whole clip by how words of file names and descriptions begin."""
 
 _SMOOTHING_S = 0.5
 _SHORTEST_S = 0.25
@@ -57,8 +67,13 @@ def tag(clip: Clip, words: str) -> Clip:
 
 def file_tags(words: str, frames: int) -> tuple[TagSpan, ...]:
     """Return tags of the whole clip for known words in a name such as `fallAndGetUp1_subject2`."""
-    text = re.sub(r"[^a-z]", "", words.lower())
-    return tuple(TagSpan(word, 0, frames) for word in FILE_WORDS if word in text)
+    spaced = re.sub(r"([a-z])([A-Z])", r"\1 \2", words)
+    found = re.findall(r"[a-z]+", spaced.lower())
+    return tuple(
+        TagSpan(name, 0, frames)
+        for name, stems in FILE_WORDS.items()
+        if any(word.startswith(stems) for word in found)
+    )
 
 
 def measured_tags(clip: Clip) -> tuple[TagSpan, ...]:

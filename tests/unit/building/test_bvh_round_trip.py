@@ -12,7 +12,6 @@ from stridewire.motion.clip import Clip
 from stridewire.motion.root import extract_root
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.building.importing import import_file
-from stridewire_engine.building.profiles import shipped_profiles
 
 ONE_MILLIMETRE = 1e-3
 
@@ -36,7 +35,7 @@ def test_round_trip_through_the_importer(tmp_path: Path, frame_rate: float) -> N
     clip = circling_clip(frame_rate)
     path = tmp_path / "sway.bvh"
     write_bvh(path, clip)
-    back = import_file(path, shipped_profiles(), "sway").clip
+    back = import_file(path).clip
     assert back is not None
     assert back.frame_rate == 60.0
     every, each = max(1, round(frame_rate / 60.0)), max(1, round(60.0 / frame_rate))
