@@ -18,6 +18,9 @@ _UNITS = (1.0, 0.1, 0.0564, 0.0254, 0.01, 0.001)
 _LEG = 1.0
 """Length of the longest chain of bones downwards from the hips in people; metres."""
 
+_UPPER_BODY = ("head", "neck", "skull", "chest", "thorax", "torso", "spine")
+"""Parts of names of joints above the hips, the highest first."""
+
 _LEAST_HIP_WIDTH = 0.05
 """Hip joints of some skeletons begin with a pair of joints in one place; metres."""
 
@@ -109,7 +112,7 @@ class Subject:
         positions, _ = source.global_poses()
         positions = positions * (source.metres_per_unit or _metres_per_unit(source.skeleton))
         names, rate = source.skeleton.names, source.frame_rate or frame_rate
-        positions = _upright(positions, _head(names))
+        positions = _upright(positions, names)
         sides = joint_sides(names)
         feet = _feet(positions, sides)
         # low toes stand on the ground; a quantile, since marker noise goes below
@@ -156,11 +159,14 @@ def _metres_per_unit(skeleton: Skeleton) -> float:
     return _UNITS[int(np.argmin(distance))]
 
 
-def _upright(positions: Vectors, head: int | None) -> Vectors:
-    """Turn Z-up files to Y-up, told by where the head is above the hips."""
-    if head is None:
+def _upright(positions: Vectors, names: tuple[str, ...]) -> Vectors:
+    """Turn Z-up files to Y-up, told by where the upper body is above the hips."""
+    upper = next(
+        (i for word in _UPPER_BODY for i, name in enumerate(names) if word in name.lower()), None
+    )
+    if upper is None:
         return positions
-    x, y, z = np.abs(np.median(positions[:, head] - positions[:, 0], axis=0))
+    x, y, z = np.abs(np.median(positions[:, upper] - positions[:, 0], axis=0))
     if z <= max(x, y):
         return positions
     return np.stack([positions[..., 0], positions[..., 2], -positions[..., 1]], axis=-1)
