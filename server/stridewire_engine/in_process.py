@@ -74,15 +74,13 @@ class InProcessStream:
         if self._closed:
             raise ProtocolError("the session is closed; open another one")
         if isinstance(message, Edit):
-            error = self._runtime.edit(self._session, message)
+            self._report(self._runtime.edit(self._session, message))
         elif message.ack_only:
             return
         elif self._paced:
-            error = self._runtime.control(self._session, message)
+            self._report(self._runtime.control(self._session, message))
         else:
-            error = self._advance(message)
-        if error is not None:
-            self._inbox.append(error)
+            self._advance(message)
 
     def receive(self, timeout_s: float) -> ServerMessage | None:
         """Return the next message; None when the session was closed.
@@ -105,10 +103,14 @@ class InProcessStream:
         self._advance(self._session.held_step(self._interval))
         return self._inbox.popleft()
 
-    def _advance(self, step: Step) -> StreamError | None:
+    def _advance(self, step: Step) -> None:
         ((frame, error),) = self._runtime.advance([(self._session, step)])
+        self._report(error)  # before its frame, as a server sends it
         self._inbox.append(frame)
-        return error
+
+    def _report(self, error: StreamError | None) -> None:
+        if error is not None:
+            self._inbox.append(error)
 
     def close(self) -> None:
         """End the session."""
