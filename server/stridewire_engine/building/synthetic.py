@@ -1,7 +1,7 @@
-"""The synthetic library: clips out of nothing but a seed.
+"""The synthetic library: clips drawn from the gait model, out of nothing but a seed.
 
 They are what the service runs on until it is given capture, and what tests run on; they carry exact
-contacts.
+contacts. No frame of them is a captured one.
 """
 
 from collections.abc import Iterator
@@ -10,14 +10,22 @@ import numpy as np
 
 from stridewire.motion.clip import Clip
 from stridewire_engine.building.gait.draw import draw_clip, reverse
+from stridewire_engine.building.gait.model import GaitModel
 from stridewire_engine.building.gait.script import Segment
+
+CREDIT = (
+    "Drawn by Stridewire from a gait model fitted on captured motion. The data used in this "
+    "project was obtained from mocap.cs.cmu.edu. The database was created with funding from NSF "
+    "EIA-0196217."
+)
+"""Credit line of every synthetic library."""
 
 _Script = list[Segment]
 _WALKS = (0.5, 0.8, 1.1, 1.4, 1.7)
 _JOGS = (2.2, 2.6)
 _RUNS = (3.0, 3.5, 4.0)
 _WALK_CURVES = ((0.8, 0.9), (0.9, 1.6), (1.3, 0.35), (1.3, 0.7), (1.2, 1.1))
-_RUN_CURVES = ((2.3, 0.5), (2.5, 0.8), (3.3, 0.3), (3.3, 0.6))
+_RUN_CURVES = ((2.3, 0.5), (2.5, 0.8), (3.3, 0.3), (3.3, 0.6), (3.0, 0.2), (3.7, 0.4))
 
 
 def synthetic_clips(seed: int = 0) -> list[Clip]:
@@ -30,8 +38,9 @@ def synthetic_clips(seed: int = 0) -> list[Clip]:
         seed: Same seed, same clips.
     """
     rng = np.random.default_rng(seed)
-    clips = [draw_clip(name, script, rng) for name, script in _forward(rng)]
-    return clips + [reverse(draw_clip(name, script, rng)) for name, script in _backward()]
+    model = GaitModel.shipped()
+    clips = [draw_clip(model, name, script, rng) for name, script in _forward(rng)]
+    return clips + [reverse(draw_clip(model, name, script, rng)) for name, script in _backward()]
 
 
 def _forward(rng: np.random.Generator) -> Iterator[tuple[str, _Script]]:

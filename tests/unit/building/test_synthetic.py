@@ -68,11 +68,11 @@ def test_planted_toes_do_not_slide(clips: list[Clip], positions: list[Vectors]) 
 
 
 def test_nothing_sinks_or_squats(clips: list[Clip], positions: list[Vectors]) -> None:
-    """Feet stay above the ground, the hips between 0.78 and 1 m, the head on top."""
+    """Feet stay above the ground, the hips between 0.75 and 1.05 m, the head on top."""
     for clip, joints in zip(clips, positions, strict=True):
         assert joints[:, FEET, 1].min() > 0.015, clip.name
-        assert joints[:, 0, 1].min() > 0.78, clip.name
-        assert joints[:, 0, 1].max() < 1.0, clip.name
+        assert joints[:, 0, 1].min() > 0.75, clip.name
+        assert joints[:, 0, 1].max() < 1.05, clip.name
         assert joints[..., 1].max(axis=1).min() > 1.2, clip.name
 
 
@@ -87,14 +87,14 @@ def test_knees_bend_forward(clips: list[Clip], positions: list[Vectors]) -> None
 
 
 def test_legs_do_not_cross(clips: list[Clip], positions: list[Vectors]) -> None:
-    """The left ankle stays left of the right one, but for a step of a tight turn."""
+    """The left ankle stays left of the right one, but in a few tight turns, as people's."""
     apart = np.concatenate(
         [
             _local(clip, joints[:, [3]] - joints[:, [7]])[:, 0, 0]
             for clip, joints in zip(clips, positions, strict=True)
         ]
     )
-    assert np.mean(apart < 0.02) < 0.01
+    assert np.mean(apart < 0.02) < 0.025
     assert apart.min() > -0.1
 
 

@@ -10,14 +10,18 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from stridewire.motion.array_types import Flags, Floats
+from stridewire_engine.building.gait.model import GaitModel
 from stridewire_engine.building.gait.script import FRAME_RATE, Travel
 
-HOLD_PHASES = (0.05, 0.55)
+HOLD_PHASES = (0.02, 0.52)
 """Phases of the left foot at which a character comes to stand: both feet down."""
 
 _RUN_ABOVE, _WALK_BELOW = 2.05, 1.85
 _MOVING_SPEED, _MOVING_TURN = 0.08, 0.15
 _BLEND_S = 0.1
+_PLANTED_AT = (0.09, 0.11)
+_RUN_STANCE = 0.2
+_SIDE_CADENCE, _MOST_SIDE_CADENCE = 1.3, 0.45
 
 
 @dataclass(frozen=True)
@@ -34,44 +38,56 @@ class Cycle:
     """`(T,)` whether the phase is held."""
     stance: Floats
     """`(T,)` share of the cycle that a toe is planted."""
+    cadence: Floats
+    """`(T,)` cycles a second."""
 
     @property
     def planted(self) -> Flags:
         """`(T, 2)` whether the left and the right toe are planted."""
         return self.phase < self.stance[:, None]
 
+    @property
+    def model_phase(self) -> Floats:
+        """`(T,)` phase of the gait model: 0 where the left ankle is farthest ahead."""
+        walk, run = _PLANTED_AT
+        return np.asarray(self.phase[:, 0] + walk + self.run * (run - walk)) % 1.0
 
-def cadence(travel: Travel, run: Floats) -> Floats:
-    """Return cycles a second `(T,)`: more with speed and turning, short quick steps sideways."""
-    speed, sideways = travel.speed, np.abs(travel.velocity[:, 0])
-    walk = 0.62 + 0.3 * np.minimum(speed, 2.2) + 0.12 * np.minimum(np.abs(travel.turn), 2.0)
-    walk = walk + np.minimum(1.3 * sideways, 0.55)
-    return walk + run * (1.38 + 0.035 * (speed - 3.0) - walk)
+    @property
+    def stance_seconds(self) -> Floats:
+        """`(T,)` how long a toe stays planted."""
+        return self.stance / self.cadence
 
 
-def stance_share(speed: Floats, run: Floats) -> Floats:
-    """Return the share of the cycle `(T,)` that a toe is planted."""
-    walk = 0.62 - 0.045 * np.clip(speed - 0.7, 0.0, 1.5)
-    running = np.clip(0.36 - 0.05 * (speed - 2.5), 0.24, 0.38)
+def cadence(model: GaitModel, travel: Travel, run: Floats) -> Floats:
+    """Return cycles a second `(T,)`: the model's; short quick steps sideways."""
+    walk, running = (gait.cadence_at(travel.speed, travel.turn) for gait in (model.walk, model.run))
+    walk = walk + np.minimum(_SIDE_CADENCE * np.abs(travel.velocity[:, 0]), _MOST_SIDE_CADENCE)
     return np.asarray(walk + run * (running - walk))
 
 
-def cycle(travel: Travel, rate: float = 1.0, start: float = HOLD_PHASES[0]) -> Cycle:
+def _stance_share(speed: Floats, run: Floats) -> Floats:
+    """Return the share of the cycle `(T,)` that a toe is planted, as in the training data."""
+    walk = 0.51 - 0.055 * (np.minimum(speed, 2.2) - 0.7)
+    return np.asarray(walk + run * (_RUN_STANCE - walk))
+
+
+def cycle(model: GaitModel, travel: Travel, rate: float, start: float) -> Cycle:
     """Run the phase along a script.
 
     Args:
+        model: Says how quick steps are.
         travel: T frames.
         rate: Factor on the cadence: the person.
         start: Phase of the left foot in the first frame.
     """
     speed = travel.speed
     run = gaussian_filter1d(_hysteresis(speed).astype(float), _BLEND_S * FRAME_RATE, mode="nearest")
-    stance = stance_share(speed, run)
-    steps = rate * cadence(travel, run) / FRAME_RATE
+    pace = rate * cadence(model, travel, run)
     moving = (speed > _MOVING_SPEED) | (np.abs(travel.turn) > _MOVING_TURN)
-    left, holding = _advance(steps, moving, start)
+    left, holding = _advance(pace / FRAME_RATE, moving, start)
     stepping = gaussian_filter1d((~holding).astype(float), _BLEND_S * FRAME_RATE, mode="nearest")
-    return Cycle(np.stack([left, (left + 0.5) % 1.0], axis=-1), run, stepping, holding, stance)
+    phase = np.stack([left, (left + 0.5) % 1.0], axis=-1)
+    return Cycle(phase, run, stepping, holding, _stance_share(speed, run), pace)
 
 
 def _hysteresis(speed: Floats) -> Flags:

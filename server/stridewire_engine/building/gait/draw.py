@@ -1,67 +1,55 @@
-"""Drawing: one clip from a script, with the tags that the script implies."""
+"""Drawing: one clip from a script."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from stridewire.motion import quaternion
-from stridewire.motion.array_types import Flags
-from stridewire.motion.clip import Clip, Pose, TagSpan
+from stridewire.motion.array_types import Floats
+from stridewire.motion.clip import Clip
+from stridewire_engine.building.gait.body import Body, Person, body
 from stridewire_engine.building.gait.cycle import HOLD_PHASES, Cycle, cycle
 from stridewire_engine.building.gait.figure import make_clip
-from stridewire_engine.building.gait.planting import Feet, plant, stances
-from stridewire_engine.building.gait.procedural import TOE_HEIGHT, Body, Person, body
+from stridewire_engine.building.gait.model import GaitModel
+from stridewire_engine.building.gait.planting import Feet, plant
 from stridewire_engine.building.gait.script import FRAME_RATE, Segment, Travel, travel
+from stridewire_engine.building.tagging import tag
 
 _MARGIN_S = 1.5
 _SOURCE = "synthetic"
+_TOE_HEIGHT = 0.02
 
 
-def draw_clip(name: str, script: Sequence[Segment], rng: np.random.Generator) -> Clip:
+def draw_clip(
+    model: GaitModel, name: str, script: Sequence[Segment], rng: np.random.Generator
+) -> Clip:
     """Draw one clip at 60 frames/s on the reference skeleton.
 
     Args:
+        model: How people move.
         name: Of the clip.
         script: How the character travels.
         rng: Draws the person and what is left to chance.
     """
     path = travel(script, _MARGIN_S)
-    steps = cycle(path, rng.uniform(0.96, 1.04), _first_phase(script, rng))
-    moved = body(path, steps, Person.draw(rng), rng)
-    feet = plant(_in_world(moved, path, steps), steps.holding, TOE_HEIGHT)
+    person = Person.draw(model, rng)
+    steps = cycle(model, path, person.rate, _first_phase(script, rng))
+    moved = body(model, person, path, steps, rng)
+    feet = plant(_in_world(moved, path, steps), steps.holding, _pivot(path), _TOE_HEIGHT)
     turn = quaternion.from_yaw(path.yaw)
     hips = path.position + quaternion.rotate(turn, moved.hips)
     rotations = moved.rotations.copy()
     rotations[:, 0] = quaternion.multiply(turn, rotations[:, 0])
     whole = make_clip(name, hips, rotations, feet, _SOURCE)
     margin = round(_MARGIN_S * FRAME_RATE)
-    return replace(whole, tags=tuple(_tags(path, steps))).cut(margin, len(whole) - margin)
+    return tag(whole.cut(margin, len(whole) - margin), "")
 
 
 def reverse(clip: Clip) -> Clip:
-    """Play a clip backward: what was a walk ahead becomes one backward, starts become stops."""
-    pose = clip.pose
-    last = len(clip)
-    swap = {"start": "stop", "stop": "start", "turn-left": "turn-right", "turn-right": "turn-left"}
-    return replace(
-        clip,
-        pose=Pose(
-            pose.root_position[::-1],
-            pose.root_rotation[::-1],
-            pose.hips[::-1],
-            pose.rotations[::-1],
-        ),
-        contacts=clip.contacts[::-1],
-        tags=tuple(
-            TagSpan(
-                "backward" if t.name == "walk" else swap.get(t.name, t.name),
-                last - t.end,
-                last - t.start,
-            )
-            for t in reversed(clip.tags)
-        ),
-    )
+    """Play a clip from its end: what was a walk ahead becomes one backward."""
+    pose = clip.pose[::-1]
+    return tag(replace(clip, pose=pose, contacts=clip.contacts[::-1]), "")
 
 
 def _first_phase(script: Sequence[Segment], rng: np.random.Generator) -> float:
@@ -79,34 +67,6 @@ def _in_world(moved: Body, path: Travel, steps: Cycle) -> Feet:
     return Feet(toe, moved.yaw + path.yaw[:, None], moved.pitch, steps.planted)
 
 
-def _tags(path: Travel, steps: Cycle) -> Iterator[TagSpan]:
-    """Yield spans of at least a quarter of a second."""
-    speed, standing = path.speed, steps.stepping < 0.5
-    sideways = ~standing & (np.abs(path.velocity[:, 0]) > 0.2)
-    ahead = ~standing & ~sideways & (speed > 0.1)
-    change = np.gradient(speed) * FRAME_RATE
-    slow = speed < 1.0
-    flags: dict[str, Flags] = {
-        "idle": standing,
-        "walk": ahead & (steps.run < 0.5),
-        "jog": ahead & (steps.run >= 0.5) & (speed < 2.8),
-        "run": ahead & (steps.run >= 0.5) & (speed >= 2.8),
-        "sidestep": sideways,
-        "turn": ~standing & (np.abs(path.turn) > 0.5),
-        "turn-left": ~standing & (path.turn > 0.5),
-        "turn-right": ~standing & (path.turn < -0.5),
-        "start": _ramp(change > 0.5, slow),
-        "stop": _ramp(change < -0.5, slow),
-    }
-    for name, flag in flags.items():
-        for start, end in stances(flag):
-            if end - start >= 0.25 * FRAME_RATE:
-                yield TagSpan(name, start, end)
-
-
-def _ramp(changing: Flags, slow: Flags) -> Flags:
-    """Keep the spans of changing speed that touch slowness: starts and stops, not walk to run."""
-    out = np.zeros(len(changing), bool)
-    for start, end in stances(changing):
-        out[start:end] = slow[start:end].any()
-    return out
+def _pivot(path: Travel) -> Floats:
+    """Let planted feet turn on the ball in sharp turns, as people's do."""
+    return np.asarray(0.5 * np.clip((np.abs(path.turn) - 0.8) / 1.2, 0.0, 1.0))

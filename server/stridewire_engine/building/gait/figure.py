@@ -17,10 +17,10 @@ _LEGS = tuple(
     for side in ("Left", "Right")
 )
 _LEG_LENGTH = float(-REFERENCE.offsets[_LEGS[0][1], 1] - REFERENCE.offsets[_LEGS[0][2], 1])
-_REACH = 0.985 * _LEG_LENGTH
+_REACH = 0.997 * _LEG_LENGTH
 _FOOT = REFERENCE.offsets[_LEGS[0][3]]
 _MAX_HEEL_LIFT = np.radians(65.0)
-_STILL = 0.15
+_STILL = 0.1
 
 
 def make_clip(name: str, hips: Vectors, rotations: Quaternions, feet: Feet, source: str) -> Clip:
@@ -67,7 +67,10 @@ def _raise_heels(hips: Vectors, rotation: Quaternions, feet: Feet) -> Floats:
     pitch = feet.pitch.copy()
     for _ in range(40):
         far = np.linalg.norm(_ankles(feet.toe, feet.yaw, pitch) - start, axis=-1) > _REACH
-        pitch = np.where(far & (pitch < _MAX_HEEL_LIFT), pitch + np.radians(1.5), pitch)
+        far &= pitch < _MAX_HEEL_LIFT
+        if not far.any():
+            break
+        pitch += np.radians(1.5) * far
     lift = gaussian_filter1d(pitch - feet.pitch, 2.0, axis=0, mode="nearest")
     return np.asarray(feet.pitch + lift)
 

@@ -1,0 +1,1 @@
+"""Coefficients and networks that ship, each beside a card that says where it comes from."""
