@@ -1,8 +1,11 @@
 """Cleaning: from a retargeted motion to a clip on the ground, with a root and contacts."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from stridewire.motion import kinematics
+from stridewire.formats.source_motion import SourceMotion
+from stridewire.motion import kinematics, quaternion
 from stridewire.motion.array_types import Floats, Quaternions, Vectors
 from stridewire.motion.clip import Clip, differences
 from stridewire.motion.contacts import detect_contacts, rest_heights
@@ -16,8 +19,10 @@ FRAME_RATE = 60.0
 _LEADING = 3
 _JUMP = np.deg2rad(2.0)
 _SPIKE = np.deg2rad(15.0)
+_SPIKE_SPEED = np.deg2rad(1000.0)
+_WIDEST_SPIKE = 3
 _FROZEN = 1e-6
-_GAP_FRAMES = 6
+_GAP_S = 0.1
 _STILL = 0.15
 _FLOOR_PERCENTILE = 25.0
 _TOES = ("LeftToe", "RightToe")
@@ -68,28 +73,52 @@ def leading_pose(rotations: Quaternions) -> int:
     return int(jumps[-1]) + 1 if len(jumps) else 0
 
 
-def oddities(clip: Clip) -> list[str]:
-    """Return what a person should look at: spikes and gaps, with the first time and joint."""
-    found = []
-    steps = _steps(clip.pose.rotations.astype(np.float64))
-    around = _angle(clip.pose.rotations[2:], clip.pose.rotations[:-2])
-    spikes = (np.minimum(steps[1:], steps[:-1]) > _SPIKE) & (around < 0.5 * _SPIKE)
-    if spikes.any():
-        frame, joint = np.argwhere(spikes)[0]
-        found.append(
-            f"{int(spikes.any(axis=-1).sum())} spike(s), the first at "
-            f"{(frame + 1) / clip.frame_rate:.2f} s in {clip.skeleton.names[joint]}"
-        )
-    still = np.abs(np.diff(clip.pose.rotations, axis=0)).max(axis=(1, 2)) < _FROZEN
-    frozen = np.concatenate([[False], still, [False]])
-    edges = np.flatnonzero(np.diff(frozen.astype(np.int8)))
-    gaps = [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > _GAP_FRAMES]
-    if gaps:
-        found.append(
-            f"{len(gaps)} gap(s) without any motion, the first at "
-            f"{gaps[0][0] / clip.frame_rate:.2f} s"
-        )
-    return found
+def mend_spikes(source: SourceMotion, frame_rate: float) -> tuple[SourceMotion, list[str]]:
+    """Bridge joints that jump away and back within three frames; return a note of what was bridged.
+
+    No joint turns away and back by 15 degrees, and at 1000 degrees/s or more, in so few frames;
+    solvers that flip a joint do.
+
+    Args:
+        source: As read.
+        frame_rate: Frames per second.
+    """
+    rotations = source.rotations.copy()
+    threshold = max(_SPIKE, _SPIKE_SPEED / frame_rate)
+    mended = np.zeros(rotations.shape[:2], bool)
+    for width in range(1, _WIDEST_SPIKE + 1):
+        if len(rotations) < width + 2:
+            break
+        before, after = rotations[: -width - 1], rotations[width + 1 :]
+        steps = _steps(rotations)
+        jump = np.minimum(steps[: len(before)], steps[width:])
+        spike = (jump > threshold) & (_angle(before, after) < 0.35 * jump)
+        for frame, joint in np.argwhere(spike):
+            weight = np.arange(1, width + 1) / (width + 1)
+            a, b = rotations[frame, joint], rotations[frame + width + 1, joint]
+            rotations[frame + 1 : frame + width + 1, joint] = quaternion.slerp(
+                np.broadcast_to(a, (width, 4)), np.broadcast_to(b, (width, 4)), weight
+            )
+            mended[frame + 1 : frame + width + 1, joint] = True
+    if not mended.any():
+        return source, []
+    frame, joint = np.argwhere(mended)[0]
+    note = (
+        f"{int(mended.any(axis=-1).sum())} frame(s) with spikes were mended, the first at "
+        f"{frame / frame_rate:.2f} s in {source.skeleton.names[joint]}"
+    )
+    return replace(source, rotations=rotations), [note]
+
+
+def gaps(source: SourceMotion, frame_rate: float) -> list[str]:
+    """Return a note where a motion is dead still for more than 0.1 s, as where markers are lost."""
+    still = np.abs(np.diff(source.rotations, axis=0)).max(axis=(1, 2)) < _FROZEN
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], still, [False]]).astype(np.int8)))
+    lengths = edges[1::2] - edges[::2]
+    dead = edges[::2][lengths > _GAP_S * frame_rate]
+    if not len(dead):
+        return []
+    return [f"{len(dead)} gap(s) without any motion, the first at {dead[0] / frame_rate:.2f} s"]
 
 
 def _steps(rotations: Quaternions) -> Floats:

@@ -11,7 +11,7 @@ from pathlib import Path
 from stridewire.formats.reading import READERS, read_motion
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion.clip import Clip
-from stridewire_engine.building.cleaning import clean, leading_pose, oddities
+from stridewire_engine.building.cleaning import clean, gaps, leading_pose, mend_spikes
 from stridewire_engine.building.joint_mapping import map_joints
 from stridewire_engine.building.profiles import Profile, shipped_profiles
 from stridewire_engine.building.retarget import fits, retarget
@@ -144,11 +144,13 @@ def import_file(
             f"{path}: {len(source)} frames at {rate:g} per second; expected at least "
             f"{_SHORTEST_S:g} s"
         )
+    source, mended = mend_spikes(source, rate)
+    notes += [*mended, *gaps(source, rate)]
     profile = find_profile(source, profiles or shipped_profiles())
     motion = retarget(source, profile, rate)
     floor = 0.0 if motion.unchanged else None
     clip = clean(name or path.stem, motion.hips, motion.rotations, rate, path.name, floor)
-    notes += [*motion.notes, *oddities(clip)]
+    notes += motion.notes
     tagged = tag(clip, f"{path.stem} {sidecar.words}")
     return Outcome(path, tagged, notes=(*source.notes, *notes), profile=profile.name)
 
