@@ -6,11 +6,11 @@ from pathlib import Path
 import click
 
 from stridewire.drawing import Subject, draw_contact_sheet
-from stridewire.formats.bvh import read_bvh
+from stridewire.formats.reading import read_motion
 
 
 @click.command()
-@click.argument("motion", metavar="IN.bvh", type=click.Path(dir_okay=False, path_type=Path))
+@click.argument("motion", metavar="MOTION", type=click.Path(dir_okay=False, path_type=Path))
 @click.option(
     "--out",
     type=click.Path(dir_okay=False, path_type=Path),
@@ -18,6 +18,11 @@ from stridewire.formats.bvh import read_bvh
 )
 @click.option("--start", default=0.0, show_default=True, help="Begin in seconds.")
 @click.option("--end", type=float, help="End in seconds; the file's by default.")
+@click.option(
+    "--rate",
+    type=click.FloatRange(1.0, 1000.0),
+    help="Frames per second, for files that do not say (AMC) or say it wrong.",
+)
 @click.option("--title", help="Title; the file's name by default.")
 @click.option("--columns", type=click.IntRange(4, 24), default=8, show_default=True)
 @click.option("--rows", type=click.IntRange(1, 24), default=2, show_default=True)
@@ -27,17 +32,21 @@ def render(
     out: Path | None,
     start: float,
     end: float | None,
+    rate: float | None,
     title: str | None,
     columns: int,
     rows: int,
     as_json: bool,
 ) -> None:
-    """Draw a motion file (BVH) as a contact sheet.
+    """Draw a motion file (BVH, or AMC beside its ASF) as a contact sheet.
 
     Shows figures at even times, the way from above, the feet and the speed over time.
     """
     out = out or motion.with_suffix(".png")
-    subject = Subject.of_source(read_bvh(motion))
+    source = read_motion(motion)
+    if source.frame_rate is None and rate is None:
+        raise click.UsageError(f"{motion} does not say its frame rate; give it with --rate")
+    subject = Subject.of_source(source, rate)
     subject = subject.between(start, subject.seconds if end is None else end)
     draw_contact_sheet(subject, out, title=title, columns=columns, rows=rows)
     facts = {

@@ -102,16 +102,22 @@ class Subject:
         )
 
     @classmethod
-    def of_source(cls, source: SourceMotion, frame_rate: float = 30.0) -> "Subject":
+    def of_source(cls, source: SourceMotion, frame_rate: float | None = None) -> "Subject":
         """Take a motion file as it is, its units, axes, feet and root guessed from what moves.
 
         Args:
             source: Any skeleton.
-            frame_rate: Frames per second where the file does not say.
+            frame_rate: Frames per second, instead of what the file says.
+
+        Raises:
+            ValueError: If neither the file nor the caller says the frame rate.
         """
+        rate = frame_rate or source.frame_rate
+        if rate is None:
+            raise ValueError(f"{source.path} does not say its frame rate; give it")
         positions, _ = source.global_poses()
         positions = positions * (source.metres_per_unit or _metres_per_unit(source.skeleton))
-        names, rate = source.skeleton.names, source.frame_rate or frame_rate
+        names = source.skeleton.names
         positions = _upright(positions, names)
         sides = joint_sides(names)
         feet = _feet(positions, sides)

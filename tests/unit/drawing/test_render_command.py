@@ -27,6 +27,12 @@ def test_the_picture_lies_beside_the_motion_by_default(bvh: Path) -> None:
     assert "121 frames" in result.output
 
 
+def test_a_rate_replaces_that_of_the_file(bvh: Path) -> None:
+    """At half the rate the motion lasts twice as long."""
+    result = CliRunner().invoke(main, ["render", str(bvh), "--rate", "30"])
+    assert "4.0 s" in result.output
+
+
 def test_json_is_one_object(bvh: Path, tmp_path: Path) -> None:
     """Programs read what was drawn, of the span asked for."""
     out = tmp_path / "out.png"
@@ -41,6 +47,7 @@ def test_json_is_one_object(bvh: Path, tmp_path: Path) -> None:
     ("content", "arguments", "message"),
     [
         ("no bvh at all", [], "expected a BVH file"),
+        (None, ["--rate", "0"], "--rate"),
         (None, ["--start", "5"], "holds no frame"),
     ],
 )

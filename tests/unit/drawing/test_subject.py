@@ -81,6 +81,14 @@ def test_guesses_agree_with_what_the_clip_knows(
     assert guessed.seconds == known.seconds == 2.0
 
 
+def test_a_file_without_a_rate_needs_one(source: Callable[..., SourceMotion]) -> None:
+    """AMC does not say; the caller must."""
+    silent = replace(source(), frame_rate=None)
+    with pytest.raises(ValueError, match=r"sway\.bvh does not say its frame rate"):
+        Subject.of_source(silent)
+    assert Subject.of_source(silent, 120.0).seconds == 1.0
+
+
 def test_planted_feet_are_low_and_slow() -> None:
     """A foot that is lifted or slides is not planted."""
     chain = Skeleton(
