@@ -320,7 +320,7 @@ class Frame:
 
     def flagged(self, flag: FrameFlag) -> Indices:
         """Return the ids of the characters that have a flag."""
-        return self.characters[(self.flags >> np.uint32(flag)) & 1 == 1]
+        return np.asarray(self.characters[(self.flags >> np.uint32(flag)) & 1 == 1])
 
 
 @dataclass(frozen=True)
