@@ -36,7 +36,7 @@ ENGINE_FLOORS = {
 
 THIRD_PARTY = {
     "stridewire": {"click", "google", "grpc", "matplotlib", "mpl_toolkits", "numpy"},
-    "stridewire_engine": {"click", "faiss", "numpy", "onnxruntime", "scipy"},
+    "stridewire_engine": {"click", "faiss", "matplotlib", "numpy", "onnxruntime", "scipy"},
     "stridewire_server": {
         "click",
         "google",
@@ -124,6 +124,18 @@ def test_the_engine_imports_only_lower_floors() -> None:
         own, other = (name.split(".")[1:2] for name in (found.module, found.target))
         if own and other and own != other and ENGINE_FLOORS[own[0]] <= ENGINE_FLOORS[other[0]]:
             wrong.append(found)
+    assert not wrong, listed(wrong)
+
+
+def test_only_reports_of_the_engine_draw_and_only_its_commands_ask() -> None:
+    """Matplotlib stays within commands and evaluation, click within commands."""
+    reports, commands = "stridewire_engine.evaluation", "stridewire_engine.commands"
+    wrong = [
+        i
+        for i in imports_of("stridewire_engine")
+        if (within(i.target, "matplotlib") and not within(i.module, reports, commands))
+        or (within(i.target, "click") and not within(i.module, commands))
+    ]
     assert not wrong, listed(wrong)
 
 
