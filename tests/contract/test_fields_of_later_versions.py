@@ -1,0 +1,151 @@
+"""Every field that a later version fills is refused by name, and no other."""
+
+from collections.abc import Callable
+
+import grpc
+import pytest
+
+from serving import opening, stepping
+from stridewire.v1 import (
+    animation_pb2,
+    blend_pb2,
+    blend_pb2_grpc,
+    match_pb2,
+    pose_pb2,
+    stitch_pb2,
+    stitch_pb2_grpc,
+)
+from stridewire.v1 import animation_pb2 as pb
+from stridewire.v1.match_pb2_grpc import MatchServiceStub
+
+Call = Callable[..., list[pb.AnimateResponse]]
+
+OPEN = {
+    "open.output_skeleton": {"output_skeleton": pose_pb2.Skeleton(name="mixamo")},
+    "open.format": {"format": pb.POSE_FORMAT_F16},
+    "open.resume_token": {"resume_token": "r"},
+}
+SPEC = {
+    "height_m": {"height_m": 1.8},
+    "filter": {"filter": "walk"},
+    "weights": {"weights": {"trajectory-position": 2.0}},
+    "responsiveness": {"responsiveness": 0.0},
+    "rate_divider": {"rate_divider": 2},
+}
+SPARSE = {
+    "filter": {"filter": "run"},
+    "gait": {"gait": "run"},
+    "ground": {"ground": pb.Ground(height=0.1)},
+}
+SEARCH = {
+    "pose.inline": {"pose": pose_pb2.PoseSource(inline=pose_pb2.Poses(frames=1))},
+    "filter": {"filter": "walk"},
+    "weights": {"weights": {"trajectory-position": 2.0}},
+}
+
+
+@pytest.mark.parametrize("field", OPEN)
+def test_open(raw_stream: Call, field: str) -> None:
+    """Open with a later field ends UNIMPLEMENTED and names it."""
+    assert field in refusal(raw_stream, opening(**OPEN[field]))
+
+
+@pytest.mark.parametrize("field", SPEC)
+def test_characters_of_an_open(raw_stream: Call, field: str) -> None:
+    """A character with a later field ends Open UNIMPLEMENTED; the path has its place."""
+    specs = [pb.CharacterSpec(id=1), pb.CharacterSpec(id=2, **SPEC[field])]
+    request = pb.AnimateRequest(open=pb.Open(characters=specs))
+    assert f"open.characters[1].{field}" in refusal(raw_stream, request)
+
+
+@pytest.mark.parametrize("field", SPEC)
+def test_characters_of_an_edit(raw_stream: Call, field: str) -> None:
+    """In an Edit the same is told in the stream, and the stream lives."""
+    edit = pb.Edit(add=[pb.CharacterSpec(id=5, **SPEC[field])])
+    responses = raw_stream(opening(), pb.AnimateRequest(edit=edit), stepping(step=1))
+    (violation,) = responses[1].error.violations
+    assert violation.field == f"edit.add[0].{field}"
+    assert "not implemented yet" in violation.description
+    assert list(responses[2].frame.characters) == [0]
+
+
+@pytest.mark.parametrize("field", SPARSE)
+def test_sparse_controls_of_a_step(raw_stream: Call, field: str) -> None:
+    """In a Step it is told in the stream, and the step makes its frame."""
+    sparse = pb.Sparse(character=0, **SPARSE[field])
+    responses = raw_stream(opening(), stepping(step=1, sparse=[sparse]))
+    (violation,) = responses[1].error.violations
+    assert violation.field == f"step.sparse[0].{field}"
+    assert "not implemented yet" in violation.description
+    assert responses[2].frame.applied_step == 1
+
+
+@pytest.mark.parametrize("field", SEARCH)
+def test_search(address: str, field: str) -> None:
+    """A search with a later field is answered UNIMPLEMENTED and names it."""
+    pose = {"pose": pose_pb2.PoseSource(clip=pose_pb2.ClipTime(clip="walk-1.1"))}
+    request = match_pb2.SearchRequest(**{**pose, **SEARCH[field]})
+    with grpc.insecure_channel(address) as channel, pytest.raises(grpc.RpcError) as raised:
+        MatchServiceStub(channel).Search(request, timeout=10.0)
+    assert raised.value.code() is grpc.StatusCode.UNIMPLEMENTED
+    assert field in raised.value.details()
+
+
+def test_services_of_later_versions(address: str) -> None:
+    """Blend and Stitch are there and say that they are not implemented yet."""
+    with grpc.insecure_channel(address) as channel:
+        blend = blend_pb2_grpc.BlendServiceStub(channel)
+        stitch = stitch_pb2_grpc.StitchServiceStub(channel)
+        for name, call in {
+            "Blend": lambda: blend.Blend(blend_pb2.BlendRequest(), timeout=10.0),
+            "BlendMany": lambda: blend.BlendMany(blend_pb2.BlendManyRequest(), timeout=10.0),
+            "Stitch": lambda: list(stitch.Stitch(stitch_pb2.StitchRequest(), timeout=10.0)),
+        }.items():
+            with pytest.raises(grpc.RpcError) as raised:
+                call()
+            assert raised.value.code() is grpc.StatusCode.UNIMPLEMENTED
+            assert f"{name} is not implemented yet" in raised.value.details()
+
+
+def test_all_other_fields_work(raw_stream: Call) -> None:
+    """Every field of Open, CharacterSpec and Sparse that is not listed above is accepted."""
+    spec = pb.CharacterSpec(
+        id=7,
+        root=pose_pb2.GroundPose(position=pose_pb2.Vector3(x=1.0), yaw=0.5),
+        stitcher="none",
+        foot_lock=False,
+    )
+    opened = pb.Open(
+        library="small",
+        pacing=pb.PACING_CLIENT,
+        rate_hz=30.0,
+        characters=[spec],
+        max_frames_in_flight=8,
+        detail=pb.DETAIL_COSTS,
+        seed=3,
+    )
+    trajectory = pose_pb2.Trajectory(
+        positions_xz=[0, 1, 0, 2], facings_yaw=[0, 0], times_s=[0.5, 1]
+    )
+    sparse = pb.Sparse(
+        character=7,
+        trajectory=trajectory,
+        root_correction=pb.RootCorrection(root=spec.root),
+        force_search=True,
+    )
+    later = {*(name.partition(".")[2] for name in OPEN), *SPEC, *SPARSE}
+    for message in (opened, spec, sparse):
+        present = {field.name for field, _ in message.ListFields()}
+        assert present == {f.name for f in message.DESCRIPTOR.fields} - later
+    responses = raw_stream(pb.AnimateRequest(open=opened), stepping(step=1, sparse=[sparse]))
+    assert [response.WhichOneof("message") for response in responses] == ["opened", "frame"]
+    assert len(responses[1].frame.simulated_root) == 4
+
+
+def refusal(call: Call, request: animation_pb2.AnimateRequest) -> str:
+    """Return the message of the UNIMPLEMENTED that a request is answered with."""
+    with pytest.raises(grpc.RpcError) as raised:
+        call(request)
+    assert raised.value.code() is grpc.StatusCode.UNIMPLEMENTED
+    details: str = raised.value.details()
+    return details
