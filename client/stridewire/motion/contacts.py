@@ -8,6 +8,9 @@ from stridewire.motion.skeleton import CONTACT_JOINTS, Skeleton
 
 _PLANT_SPEED = 0.15
 _LIFT_SPEED = 0.25
+_PLANT_SHARE = 0.1
+_LIFT_SHARE = 0.2
+_PACE_S = 0.5
 _HEIGHT_ABOVE_REST = 0.06
 _MEDIAN_S = 0.1
 
@@ -16,7 +19,8 @@ def detect_contacts(skeleton: Skeleton, positions: Vectors, frame_rate: float) -
     """Return `(T, 4)` flags: left foot, left toe, right foot, right toe planted.
 
     A joint is planted below 0.15 m/s within 6 cm of its height at rest, and stays so up to 0.25
-    m/s; a median over 0.1 s removes flicker.
+    m/s; faster than 1.5 m/s, below a tenth and up to a fifth of the body's pace, since feet that
+    run roll and creep. A median over 0.1 s removes flicker.
 
     Args:
         skeleton: Must have the four joints; its rest pose stands on the ground y = 0.
@@ -25,8 +29,11 @@ def detect_contacts(skeleton: Skeleton, positions: Vectors, frame_rate: float) -
     """
     joints = skeleton.indices(CONTACT_JOINTS)
     speed = np.linalg.norm(differences(positions[:, joints], 1.0 / frame_rate), axis=-1)
+    pace = _pace(positions[:, 0], frame_rate)[:, None]
+    plants = speed < np.maximum(_PLANT_SPEED, _PLANT_SHARE * pace)
+    lasts = speed < np.maximum(_LIFT_SPEED, _LIFT_SHARE * pace)
     low = positions[:, joints, 1] < rest_heights(skeleton, joints) + _HEIGHT_ABOVE_REST
-    planted = _hysteresis(low & (speed < _PLANT_SPEED), low & (speed < _LIFT_SPEED))
+    planted = _hysteresis(low & plants, low & lasts)
     return _median(planted, 2 * round(0.5 * _MEDIAN_S * frame_rate) + 1)
 
 
@@ -41,6 +48,15 @@ def rest_heights(skeleton: Skeleton, joints: Indices) -> Floats:
 def to_mask(contacts: Flags) -> Indices:
     """Pack flags `(..., 4)` into masks: 1 left foot, 2 left toe, 4 right foot, 8 right toe."""
     return np.asarray((contacts * np.array([1, 2, 4, 8], np.uint32)).sum(-1, dtype=np.uint32))
+
+
+def _pace(hips: Vectors, frame_rate: float) -> Floats:
+    """Return the speed over the ground `(T,)`, averaged over half a second."""
+    velocity = differences(hips, 1.0 / frame_rate)[:, [0, 2]]
+    half = round(0.5 * _PACE_S * frame_rate)
+    padded = np.pad(velocity, ((half, half), (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0)
+    return np.asarray(np.linalg.norm(windows.mean(axis=-1), axis=-1))
 
 
 def _hysteresis(on: Flags, hold: Flags) -> Flags:

@@ -57,24 +57,27 @@ def clean(
     return Clip(name, REFERENCE, FRAME_RATE, pose, contacts, source=source)
 
 
-def leading_pose(rotations: Quaternions) -> int:
-    """Return how many frames at the beginning are a rest pose, cut off from the motion by a jump.
+def leading_pose(source: SourceMotion) -> int:
+    """Return how many frames at the beginning are cut off from the motion by a jump.
 
-    A jump turns all joints by more than 2 degrees on average and thrice as far as the motion does.
-
-    Args:
-        rotations: `(T, J, 4)` local.
+    Many exporters put a rest pose first, some solvers start far away. A jump turns all joints by
+    more than 2 degrees on average, or moves the root by more than a fifth of the longest bone, and
+    three times as far as the motion does.
     """
-    steps = _steps(rotations).mean(axis=-1)
-    if len(steps) < 2 * _LEADING:
+    turns = _steps(source.rotations).mean(axis=-1)
+    moves = np.linalg.norm(np.diff(source.root_positions, axis=0), axis=-1)
+    if len(turns) < 2 * _LEADING:
         return 0
-    usual = np.percentile(steps[_LEADING:], 95.0)
-    jumps = np.flatnonzero(steps[:_LEADING] > max(3.0 * usual, _JUMP))
-    return int(jumps[-1]) + 1 if len(jumps) else 0
+    longest = np.linalg.norm(source.skeleton.offsets[1:], axis=-1).max(initial=0.0)
+    jump = np.zeros(_LEADING, bool)
+    for steps, least in ((turns, _JUMP), (moves, 0.2 * longest)):
+        usual = np.percentile(steps[_LEADING:], 95.0)
+        jump |= steps[:_LEADING] > max(3.0 * usual, least, 1e-9)
+    return int(np.flatnonzero(jump)[-1]) + 1 if jump.any() else 0
 
 
 def mend_spikes(source: SourceMotion, frame_rate: float) -> tuple[SourceMotion, list[str]]:
-    """Bridge joints that jump away and back within three frames; return a note of what was bridged.
+    """Bridge joints that jump away and back within three frames; return a note of that.
 
     No joint turns away and back by 15 degrees, and at 1000 degrees/s or more, in so few frames;
     solvers that flip a joint do.

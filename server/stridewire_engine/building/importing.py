@@ -135,10 +135,10 @@ def import_file(
     sidecar = Sidecars().of(path) if sidecar is None else sidecar
     source = read_motion(path)
     rate, notes = _frame_rate(source, frame_rate, sidecar)
-    cut = leading_pose(source.rotations)
+    cut = leading_pose(source)
     if cut:
         source = source.after(cut)
-        notes.append(f"{cut} frame(s) of a rest pose before the motion were cut")
+        notes.append(f"{cut} frame(s) before the motion begins were cut")
     if len(source) < _SHORTEST_S * rate:
         raise RefusedError(
             f"{path}: {len(source)} frames at {rate:g} per second; expected at least "

@@ -58,9 +58,9 @@ def retarget(source: SourceMotion, profile: Profile, frame_rate: float) -> Retar
         SkeletonError: If the source lacks a joint that the profile names.
         NotHumanError: If the proportions are no human's.
     """
-    if (scale := _reference_scale(source)) is not None:
-        return Retargeted(source.root_positions * scale, source.rotations, scale, unchanged=True)
     figure = see(source, profile.source_joints(source.skeleton), profile.up)
+    if not figure.turned_up and (scale := _reference_scale(source)) is not None:
+        return Retargeted(source.root_positions * scale, source.rotations, scale, unchanged=True)
     check_human(source, figure)
     scale = leg_length() / figure.length("UpLeg", "Leg", "Foot")
     axes = {**joint_axes(figure), **profile.axes}

@@ -4,6 +4,8 @@ import click
 
 from stridewire_engine.commands.library_build import build
 from stridewire_engine.commands.library_info import info
+from stridewire_engine.commands.library_profile import profile
+from stridewire_engine.commands.library_report import report
 
 
 @click.group()
@@ -11,5 +13,5 @@ def library() -> None:
     """Build libraries from motion capture and look into them."""
 
 
-for command in (build, info):
+for command in (build, info, report, profile):
     library.add_command(command)

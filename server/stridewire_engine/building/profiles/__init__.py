@@ -22,6 +22,17 @@ _AXES = {
 }
 
 
+NEEDED = (
+    "Hips",
+    *(
+        side + part
+        for side in ("Left", "Right")
+        for part in ("UpLeg", "Leg", "Foot", "Arm", "ForeArm", "Hand")
+    ),
+)
+"""Parts that every profile must map; the others follow their neighbours where they are absent."""
+
+
 class ProfileError(ValueError):
     """A profile is malformed; the message names the file, the key and what is allowed."""
 
@@ -39,6 +50,8 @@ class Profile:
     the file's zero pose tells, or its average one."""
     up: str | None = None
     """`Y` or `Z`; None where the motion tells."""
+    spine: tuple[str, ...] = ()
+    """All joints from above the hips to where the arms part; empty where any will do."""
 
     def source_joints(self, skeleton: Skeleton) -> dict[str, str]:
         """Return the skeleton's full joint names by reference joint."""
@@ -46,8 +59,31 @@ class Profile:
         return {part: full.get(name, name) for part, name in self.joints.items()}
 
     def covers(self, skeleton: Skeleton) -> bool:
-        """Return whether the skeleton has all joints that the profile names."""
-        return set(self.source_joints(skeleton).values()) <= set(skeleton.names)
+        """Return whether the skeleton has the profile's joints and its spine."""
+        joints = self.source_joints(skeleton)
+        if not set(joints.values()) <= set(skeleton.names):
+            return False
+        full = dict(zip(skeleton.names, bare_names(skeleton), strict=True))
+        return not self.spine or self.spine == tuple(full[j] for j in spine(skeleton, joints))
+
+
+def spine(skeleton: Skeleton, joints: Mapping[str, str]) -> list[str]:
+    """Return the joints from above the hips to where the arms part, the lowest first."""
+
+    def common(a: str, b: str) -> list[str]:
+        paths = [_path(skeleton, skeleton.index(joints[part])) for part in (a, b)]
+        return [x for x, y in zip(*paths, strict=False) if x == y]
+
+    below = common("LeftUpLeg", "RightUpLeg")
+    return [name for name in common("LeftArm", "RightArm") if name not in below]
+
+
+def _path(skeleton: Skeleton, joint: int) -> list[str]:
+    names = []
+    while joint >= 0:
+        names.append(skeleton.names[joint])
+        joint = skeleton.parents[joint]
+    return names[::-1]
 
 
 def load_profile(path: Path) -> Profile:
@@ -72,12 +108,18 @@ def _parse(text: str, where: str) -> Profile:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ProfileError(f"{where}: {error}; expected TOML") from None
-    unknown = sorted(set(table) - {"name", "title", "up", "joints", "axes"})
+    unknown = sorted(set(table) - {"name", "title", "up", "spine", "joints", "axes"})
     joints = table.get("joints")
     if unknown or not isinstance(table.get("name"), str) or not isinstance(joints, dict):
         wrong = f"unknown key {unknown[0]!r}" if unknown else "`name` or `[joints]` is missing"
-        raise ProfileError(f"{where}: {wrong}; expected name, title, up, [joints] and [axes]")
+        raise ProfileError(
+            f"{where}: {wrong}; expected name, title, up, spine, [joints] and [axes]"
+        )
     _check_joints(joints, where)
+    if missing := [part for part in NEEDED if part not in joints]:
+        raise ProfileError(
+            f"{where}: [joints] lacks {', '.join(missing)}; legs, arms and hips must map"
+        )
     axes: dict[str, Quaternions] = {}
     for group, entry in table.get("axes", {}).items():
         turn = _axes(entry, f"{where}: axes.{group}")
@@ -86,7 +128,11 @@ def _parse(text: str, where: str) -> Profile:
     up = table.get("up")
     if up not in (None, "Y", "Z"):
         raise ProfileError(f'{where}: up = {up!r}; expected "Y" or "Z"')
-    return Profile(table["name"], table.get("title", table["name"]), joints, axes, up)
+    chain = table.get("spine", [])
+    if not isinstance(chain, list) or not all(isinstance(name, str) for name in chain):
+        raise ProfileError(f"{where}: spine = {chain!r}; expected the names of its joints")
+    title = str(table.get("title", table["name"]))
+    return Profile(table["name"], title, joints, axes, up, tuple(chain))
 
 
 def _check_joints(joints: Mapping[str, Any], where: str) -> None:
