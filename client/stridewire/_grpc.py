@@ -3,6 +3,7 @@
 import json
 import queue
 import threading
+import weakref
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -82,10 +83,13 @@ class GrpcTransport:
         self._animation = AnimationServiceStub(self._channel)
         self._match = MatchServiceStub(self._channel)
         self._server = ServerServiceStub(self._channel)
+        self._streams: weakref.WeakSet[GrpcStream] = weakref.WeakSet()
 
     def open(self, message: Open) -> "GrpcStream":
         """Open a session."""
-        return GrpcStream(self._animation.Animate, self._address, message, self._timeout_s)
+        stream = GrpcStream(self._animation.Animate, self._address, message, self._timeout_s)
+        self._streams.add(stream)
+        return stream
 
     def search(self, query: SearchQuery) -> SearchResult:
         """Search the motion database."""
@@ -96,7 +100,9 @@ class GrpcTransport:
         return decode_server_info(self._ask(self._server.GetInfo, GetInfoRequest()))
 
     def close(self) -> None:
-        """Close the connection and with it all sessions."""
+        """End all sessions and close the connection."""
+        for stream in list(self._streams):
+            stream.close()
         self._channel.close()
 
     def _ask(self, method: Callable[..., T], request: Any) -> T:
@@ -123,6 +129,7 @@ class GrpcStream:
         )
         self._timeout_s = timeout_s
         self._ended = threading.Event()
+        self._end: StridewireError | None = None
         self._closing = False
         self._requests.put(encode_request(message))
         self._call = animate(iter(self._requests.get, None))
@@ -133,7 +140,7 @@ class GrpcStream:
         """Send a message.
 
         Raises:
-            ProtocolError: If the session has ended.
+            StridewireError: If the session has ended: what ended it.
             TimeoutError: If the server takes nothing.
         """
         self._send(message)
@@ -164,7 +171,7 @@ class GrpcStream:
             try:
                 self._send(Close())
                 self._requests.put(None, timeout=self._timeout_s)
-            except (ProtocolError, TimeoutError, queue.Full):
+            except (StridewireError, TimeoutError, queue.Full):
                 self._call.cancel()
         timer = threading.Timer(_CLOSE_TIMEOUT_S, self._call.cancel)
         timer.start()
@@ -174,7 +181,7 @@ class GrpcStream:
 
     def _send(self, message: ClientMessage) -> None:
         if self._ended.is_set():
-            raise ProtocolError("the session has ended; open another one")
+            raise self._end or ProtocolError("the session has ended; open another one")
         try:
             self._requests.put(encode_request(message), timeout=self._timeout_s)
         except queue.Full:
@@ -194,20 +201,19 @@ class GrpcStream:
         return first
 
     def _read(self) -> None:
-        end: StridewireError | None = None
         try:
             for response in self._call:
                 self._responses.put(decode_response(response))
         except grpc.RpcError as error:
             if not (self._closing and error.code() is grpc.StatusCode.CANCELLED):
-                end = to_error(error, self._address)
-                end.__cause__ = error
+                self._end = to_error(error, self._address)
+                self._end.__cause__ = error
         except StridewireError as error:
-            end = error
+            self._end = error
         finally:
             self._ended.set()
             self._release_sender()
-            self._responses.put(end)
+            self._responses.put(self._end)
 
     def _release_sender(self) -> None:
         """Let the thread in which gRPC waits for requests end."""

@@ -3,12 +3,19 @@
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from types import TracebackType
 
 import numpy as np
 import numpy.typing as npt
 
-from stridewire._errors import InvalidRequestError, ProtocolError, UnavailableError, Violation
+from stridewire._errors import (
+    InvalidRequestError,
+    ProtocolError,
+    StridewireError,
+    UnavailableError,
+    Violation,
+)
 from stridewire._messages import (
     CharacterSpec,
     CharacterUpdate,
@@ -208,7 +215,8 @@ class Session:
         """Acknowledge without a step where steps come too seldom to do it in time."""
         if self._credits and self._taken - self._acknowledged >= max(1, self._credits // 2):
             self._acknowledged = self._taken
-            self._stream.send(Step(step=self._step, last_frame=self._taken, ack_only=True))
+            with suppress(StridewireError):  # where the session has ended, `receive` says why
+                self._stream.send(Step(step=self._step, last_frame=self._taken, ack_only=True))
 
 
 def _rows(name: str, values: npt.ArrayLike | None, count: int, *shape: int) -> Floats | None:
