@@ -4,6 +4,7 @@ import asyncio
 import threading
 import time
 from collections.abc import Callable, Coroutine, Iterator, Sequence
+from functools import cache
 from typing import Any, TypeVar
 
 import grpc
@@ -22,6 +23,7 @@ from stridewire_server.settings import ServerSettings
 
 T = TypeVar("T")
 Serve = Callable[..., str]
+Stop = Callable[[], None]
 
 CLIPS = 10
 DEADLINE_S = 20.0
@@ -77,10 +79,13 @@ def loop_thread() -> Iterator[LoopThread]:
 
 @pytest.fixture(scope="session")
 def small_library(tmp_path_factory: pytest.TempPathFactory) -> Library:
-    """Return a library of a few synthetic clips."""
+    """Return a library of a few synthetic clips, built once a run."""
+    folder = tmp_path_factory.getbasetemp() / "small-library"
+    if folder.exists():
+        return Library.open(folder)
     return build_library(
         synthetic_clips()[:CLIPS],
-        tmp_path_factory.mktemp("library") / "small",
+        folder,
         name="small",
         synthetic=True,
         licence="Apache-2.0",
@@ -112,6 +117,16 @@ def serve(loop_thread: LoopThread, small_library: Library) -> Iterator[Serve]:
     yield start
     for server in servers:
         loop_thread.call(server.stop())
+
+
+@pytest.fixture
+def stopping(loop_thread: LoopThread, small_library: Library) -> Iterator[tuple[str, Stop]]:
+    """Return the address of a server of a test's own, and what stops it."""
+    settings = ServerSettings("127.0.0.1:0", drain_s=0.2)
+    server, bound = _start(loop_thread, Runtime([small_library]), settings)
+    stop = cache(lambda: loop_thread.call(server.stop()))
+    yield bound, stop
+    stop()
 
 
 @pytest.fixture

@@ -1,8 +1,8 @@
 """Driving a session by a control script, and the figures of the run.
 
-At wall-clock speed the run is open loop: controls go out at their scheduled times whether or not
-frames come back, and a frame's latency counts from the scheduled time, so that a stall of the
-server is felt by every frame that it delays.
+At wall-clock speed a frame's latency counts from the scheduled time of its control, so that a stall
+is felt by every frame that it delays. Over a wire the run is open loop, too: controls go out on
+time whether or not frames come back.
 """
 
 import threading
@@ -87,6 +87,7 @@ def drive(
     *,
     rate_hz: float = 60.0,
     realtime: bool = True,
+    open_loop: bool = True,
     watch: Callable[[Frame], None] = lambda frame: None,
 ) -> Run:
     """Drive all characters of a session with client pacing.
@@ -97,6 +98,8 @@ def drive(
         seconds: How long, in the session's time.
         rate_hz: Steps per second.
         realtime: At wall-clock speed; else as fast as frames come, and latencies are round trips.
+        open_loop: At wall-clock speed, send whether or not frames come back. A transport in this
+            process makes frames only while it is sent something; there each frame is waited for.
         watch: Called with each frame.
 
     Raises:
@@ -106,12 +109,14 @@ def drive(
     run = Run(Recording(session.opened.skeleton), rate_hz, realtime)
     steps = max(1, round(seconds * rate_hz))
     send = _Sender(session, control, run)
-    if realtime:
+    if realtime and open_loop:
         _drive_open_loop(session, send, steps, run, watch)
-    else:
-        for number in range(steps):
-            send(number, time.perf_counter())
-            _receive(session, run, watch, send.last_step)
+        return run
+    begin = time.perf_counter()
+    for number in range(steps):
+        scheduled_s = _wait_until(begin + number / rate_hz) if realtime else time.perf_counter()
+        send(number, scheduled_s)
+        _receive(session, run, watch, send.last_step)
     return run
 
 
@@ -140,9 +145,7 @@ def _drive_open_loop(
         begin = time.perf_counter() + 0.05
         try:
             for number in range(steps):
-                scheduled_s = begin + number / run.rate_hz
-                time.sleep(max(0.0, scheduled_s - time.perf_counter()))
-                send(number, scheduled_s)
+                send(number, _wait_until(begin + number / run.rate_hz))
         except Exception as error:  # told by the thread that waits for the frames
             failures.append(error)
 
@@ -161,3 +164,8 @@ def _receive(session: Session, run: Run, watch: Callable[[Frame], None], last_st
         watch(frame)
         if frame.applied_step >= last_step:
             return
+
+
+def _wait_until(scheduled_s: float) -> float:
+    time.sleep(max(0.0, scheduled_s - time.perf_counter()))
+    return scheduled_s

@@ -1,5 +1,5 @@
 """The servers that these tests talk to."""
 
-from serving import address, client, loop_thread, raw_stream, serve, small_library
+from serving import address, client, loop_thread, raw_stream, serve, small_library, stopping
 
-__all__ = ["address", "client", "loop_thread", "raw_stream", "serve", "small_library"]
+__all__ = ["address", "client", "loop_thread", "raw_stream", "serve", "small_library", "stopping"]

@@ -22,17 +22,28 @@ def spread_out(characters: int) -> list[CharacterSpec]:
 
 
 def drive_with_progress(
-    session: Session, control: Control, seconds: float, *, realtime: bool, quiet: bool
+    session: Session,
+    control: Control,
+    seconds: float,
+    *,
+    realtime: bool,
+    open_loop: bool,
+    quiet: bool,
 ) -> Run:
     """Drive a session and show how far it is on standard error."""
     label = f"{len(session.characters)} characters, {seconds:g} s"
     if quiet:
-        return drive(session, control, seconds, realtime=realtime)
+        return drive(session, control, seconds, realtime=realtime, open_loop=open_loop)
     with click.progressbar(
         length=round(seconds * 60.0), label=label, file=sys.stderr, update_min_steps=12
     ) as bar:
         return drive(
-            session, control, seconds, realtime=realtime, watch=lambda frame: bar.update(1)
+            session,
+            control,
+            seconds,
+            realtime=realtime,
+            open_loop=open_loop,
+            watch=lambda frame: bar.update(1),
         )
 
 

@@ -61,7 +61,9 @@ def stream(
         connect(address, library) as client,
         client.open_session(spread_out(characters), library=library_name, seed=seed) as session,
     ):
-        run = drive_with_progress(session, control, seconds, realtime=paced, quiet=as_json)
+        run = drive_with_progress(
+            session, control, seconds, realtime=paced, open_loop=library is None, quiet=as_json
+        )
         opened = session.opened
     files = write_motion(run, out, script_name) if out else []
     if as_json:

@@ -64,6 +64,7 @@ def demo(
             lambda time_s: _controls(time_s, characters),
             seconds,
             realtime=True,
+            open_loop=True,
             quiet=as_json,
         )
         opened = session.opened

@@ -60,6 +60,7 @@ class AnimateStream:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
+            await self._writer.settle()
 
     async def _read_all(self) -> None:
         while (request := await self._context.read()) is not EOF:

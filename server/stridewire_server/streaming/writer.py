@@ -20,6 +20,7 @@ class Writer:
         self._context = context
         self._outbox = outbox
         self._timeout_s = timeout_s
+        self._under_way: asyncio.Future[None] | None = None
 
     async def run(self) -> None:
         """Write until the outbox is finished and empty.
@@ -30,10 +31,21 @@ class Writer:
         while (message := await self._outbox.take()) is not None:
             await self._write(encode_response(message))
 
+    async def settle(self) -> None:
+        """Wait for the write under way, if any: until it is through, the stream has no status.
+
+        gRPC refuses the status of a stream while its first write is being made. A write that took
+        too long already is not waited for again.
+        """
+        if self._under_way is not None:
+            await asyncio.wait({self._under_way}, timeout=self._timeout_s)
+
     async def _write(self, response: pb.AnimateResponse) -> None:
         writing = asyncio.ensure_future(self._context.write(response))
         writing.add_done_callback(_forget)
+        self._under_way = writing
         done, _ = await asyncio.wait({writing}, timeout=self._timeout_s)
+        self._under_way = None
         if not done:
             raise ExhaustedError(
                 f"the reader took nothing for {self._timeout_s:g} s; read frames as they come, "
