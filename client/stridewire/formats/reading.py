@@ -5,9 +5,14 @@ from pathlib import Path
 
 from stridewire.formats.acclaim import read_acclaim
 from stridewire.formats.bvh import read_bvh
+from stridewire.formats.npz import read_npz
 from stridewire.formats.source_motion import FormatError, SourceMotion
 
-READERS: dict[str, Callable[[Path], SourceMotion]] = {".bvh": read_bvh, ".amc": read_acclaim}
+READERS: dict[str, Callable[[Path], SourceMotion]] = {
+    ".bvh": read_bvh,
+    ".amc": read_acclaim,
+    ".npz": read_npz,
+}
 """Readers by ending, lower case."""
 
 

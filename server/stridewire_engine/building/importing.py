@@ -202,7 +202,7 @@ def _frame_rate(
     if not SLOWEST <= rate <= FASTEST:
         raise RefusedError(
             f"{source.path}: {rate:g} frames per second; expected {SLOWEST:g} to {FASTEST:g} "
-            "(if the file is wrong, give the true rate with --fps)"
+            "(if the file is wrong, give the true rate with --rate)"
         )
     if given or rate == source.frame_rate:
         return rate, []

@@ -31,7 +31,7 @@ def split_name(name: str) -> tuple[str, str]:
 
     Understands `LeftUpLeg`, `lfemur`, `rShin`, `foot_L`, `L_foot_jnt`, `foot.L`.
     """
-    words = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
+    words = re.sub(r"([a-z0-9])([A-Z])|([A-Z])(?=[A-Z][a-z])", r"\1\3_\2", name).lower()
     parts = [word for word in re.split(r"[_.\- ]+", words) if word]
     for index, word in enumerate(parts):
         if word in ("left", "l", "right", "r"):

@@ -29,7 +29,7 @@ _FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 @click.option("--name", help="Name of the library; the folder's by default.")
 @click.option("--mirror/--no-mirror", default=True, show_default=True, help="Add mirrored copies.")
 @click.option("--profile", "profiles", multiple=True, type=_FILE, help="Joint map to try first.")
-@click.option("--fps", type=click.FloatRange(SLOWEST, FASTEST), help="True rate of all files.")
+@click.option("--rate", type=click.FloatRange(SLOWEST, FASTEST), help="True rate of all files.")
 @click.option("--split", help="Take only files of this split; needs --split-file.")
 @click.option("--split-file", type=_FILE, help="CSV with the columns data, subject and split.")
 @click.option("--tagged", multiple=True, metavar="TAG", help="Keep clips that hold one of these.")
@@ -42,7 +42,7 @@ def build(
     name: str | None,
     mirror: bool,
     profiles: tuple[Path, ...],
-    fps: float | None,
+    rate: float | None,
     split: str | None,
     split_file: Path | None,
     tagged: tuple[str, ...],
@@ -56,7 +56,7 @@ def build(
     beside the files (columns file, fps, subject, description) corrects frame rates and adds tags.
     """
     paths = _files(inputs, split, split_file)
-    clips = _import(paths, [_profile(path) for path in profiles], fps, jobs)
+    clips = _import(paths, [_profile(path) for path in profiles], rate, jobs)
     if tagged:
         clips = [clip for clip in clips if any(tag.name in tagged for tag in clip.tags)]
         click.echo(f"kept {len(clips)} clips tagged {', '.join(tagged)}")
@@ -110,11 +110,11 @@ def _profile(path: Path) -> Profile:
 
 
 def _import(
-    paths: Sequence[Path], profiles: Sequence[Profile], fps: float | None, jobs: int
+    paths: Sequence[Path], profiles: Sequence[Profile], rate: float | None, jobs: int
 ) -> list[Clip]:
     """Import with a progress bar; print a line for each file that is refused or odd."""
     clips, lines, refused = [], [], 0
-    outcomes = import_files(paths, profiles=profiles, frame_rate=fps, jobs=jobs)
+    outcomes = import_files(paths, profiles=profiles, frame_rate=rate, jobs=jobs)
     try:
         with click.progressbar(
             outcomes, length=len(paths), label="importing", show_pos=True, file=sys.stderr
