@@ -53,6 +53,7 @@ class TransitionReason(IntEnum):
     CLIP_END = 3
     FORCED = 4
     START = 5
+    FILTER_CHANGE = 6
 
 
 class FrameFlag(IntEnum):
@@ -255,6 +256,12 @@ class Transition:
     cost: float = 0.0
     stay_cost: float = 0.0
     channels: Mapping[str, float] = field(default_factory=dict)
+    bias: float = 0.0
+    """By how much the cost of staying had to be beaten."""
+    runners_up: tuple["Match", ...] = ()
+    """The next best moments, best first."""
+    excluded: tuple["ExcludedMatch", ...] = ()
+    """Better moments that were not to be chosen, best first."""
 
 
 @dataclass(frozen=True)
@@ -386,6 +393,16 @@ class Match:
     tags: tuple[str, ...]
     cost: float
     channels: Mapping[str, float]
+    bias: float = 0.0
+    """Share of the cost that the moment carries for its tags."""
+
+
+@dataclass(frozen=True)
+class ExcludedMatch:
+    """A moment that fits but was not to be chosen."""
+
+    match: Match
+    reason: str
 
 
 @dataclass(frozen=True)
@@ -395,6 +412,10 @@ class SearchResult:
     matches: tuple[Match, ...]
     library: str
     content_hash: str
+    excluded: tuple[ExcludedMatch, ...] = ()
+    """Moments better than the last match that were excluded, best first."""
+    exact: bool = True
+    """Whether every row was looked at."""
 
 
 @dataclass(frozen=True)

@@ -96,6 +96,8 @@ class Clip:
     tags: tuple[TagSpan, ...] = ()
     source: str = ""
     """File or generator that the clip came from."""
+    loops: bool = False
+    """Whether the last frame is the first pose again, one lap on."""
 
     def __post_init__(self) -> None:
         frames, joints = self.pose.rotations.shape[:2]
@@ -160,6 +162,7 @@ class Clip:
             pose=self.pose[start:end],
             contacts=self.contacts[start:end],
             tags=tags,
+            loops=self.loops and (start, end) == (0, len(self)),
         )
 
 

@@ -10,6 +10,10 @@ from stridewire.motion.clip import Clip, Pose
 from stridewire.motion.skeleton import Skeleton
 
 
+MIRRORED = "-mirrored"
+"""What the name of a mirrored copy ends in."""
+
+
 def mirror_pose(skeleton: Skeleton, pose: Pose) -> Pose:
     """Reflect poses in the plane x = 0; twice gives the pose again.
 
@@ -31,7 +35,7 @@ def mirror_clip(clip: Clip) -> Clip:
     swap = {"left": "right", "right": "left"}
     return replace(
         clip,
-        name=f"{clip.name}-mirrored",
+        name=f"{clip.name}{MIRRORED}",
         pose=mirror_pose(clip.skeleton, clip.pose),
         contacts=clip.contacts[:, [2, 3, 0, 1]],
         tags=tuple(

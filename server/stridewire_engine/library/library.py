@@ -2,8 +2,10 @@
 
 import difflib
 import hashlib
+from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,6 +14,7 @@ from stridewire._messages import LibraryInfo
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire.motion.clip import Clip, Pose
+from stridewire.motion.mirror import MIRRORED
 from stridewire.motion.skeleton import Skeleton
 from stridewire_engine.library.manifest import (
     ClipEntry,
@@ -22,10 +25,21 @@ from stridewire_engine.library.manifest import (
 )
 
 
+class StoredGrouping(NamedTuple):
+    """Startable rows grouped by nearness."""
+
+    centroids: Floats
+    """`(L, D)` float32 in normalised features."""
+    lists: Indices
+    """`(M,)` int32 list of each startable row."""
+    probes: int
+    """Number of lists that a search looks into, found by measurement."""
+
+
 class Library:
     """Clips on one skeleton at one frame rate, read-only, one after the other in arrays."""
 
-    def __init__(self, path: Path, manifest: Manifest, arrays: dict[str, Floats]) -> None:
+    def __init__(self, path: Path, manifest: Manifest, arrays: Mapping[str, Any]) -> None:
         self.path = path
         self.manifest = manifest
         self.root_position: Vectors = arrays["root_position"]
@@ -40,6 +54,11 @@ class Library:
         """`(F, 4)` bool: left foot, left toe, right foot, right toe."""
         self.features: Floats = arrays["features"]
         """`(F, D)` float32 normalised features; D and their meaning by the schema."""
+        self.grouping: StoredGrouping | None = None
+        """Rows grouped into lists, for libraries too large to be scanned."""
+        if "list_centroids" in arrays:
+            probes = int(manifest.schema["probes"])
+            self.grouping = StoredGrouping(arrays["list_centroids"], arrays["lists"], probes)
         self.startable: Flags = arrays["startable"].astype(np.bool_, copy=False)
         """`(F,)` bool: may be chosen by a search; false where the future is not known."""
 
@@ -114,6 +133,38 @@ class Library:
         return np.array([clip.frames for clip in self.clips], np.int64)
 
     @cached_property
+    def loops(self) -> Flags:
+        """`(C,)` clips that loop."""
+        return np.array([clip.loops for clip in self.clips], np.bool_)
+
+    @cached_property
+    def laps(self) -> Floats:
+        """`(C, 3)` x, z and yaw of a clip's last root as seen from its first, float64."""
+        first, last = self.clip_starts, self.clip_starts + self.clip_frames - 1
+        way = self.root_position[last].astype(np.float64) - self.root_position[first]
+        yaw = self.root_yaw[first].astype(np.float64)
+        sine, cosine = np.sin(yaw), np.cos(yaw)
+        return np.stack(
+            [
+                way[:, 0] * cosine - way[:, 2] * sine,
+                way[:, 0] * sine + way[:, 2] * cosine,
+                self.root_yaw[last] - yaw,
+            ],
+            axis=-1,
+        )
+
+    @cached_property
+    def twins(self) -> Indices:
+        """`(C,)` index of each clip's mirrored copy or original; -1 where there is none."""
+        index = self._index_by_name
+        names = [clip.name for clip in self.clips]
+        partners = [
+            name.removesuffix(MIRRORED) if name.endswith(MIRRORED) else f"{name}{MIRRORED}"
+            for name in names
+        ]
+        return np.array([index.get(partner, -1) for partner in partners], np.int64)
+
+    @cached_property
     def clip_of(self) -> Indices:
         """`(F,)` index of the clip that each row belongs to."""
         return np.repeat(np.arange(len(self.clips)), self.clip_frames)
@@ -173,6 +224,7 @@ class Library:
             self.contacts[span],
             entry.tags,
             entry.source,
+            entry.loops,
         )
 
     def info(self) -> LibraryInfo:

@@ -33,6 +33,8 @@ class ClipEntry:
     """File or generator that it came from."""
     tags: tuple[TagSpan, ...]
     """Named spans, in frames of the clip."""
+    loops: bool = False
+    """Whether the last frame is the first pose again, one lap on."""
 
 
 @dataclass(frozen=True)
@@ -187,6 +189,7 @@ def _parse(data: Mapping[str, Any]) -> Manifest:
                 int(clip["frames"]),
                 clip["source"],
                 tuple(TagSpan(**tag) for tag in clip["tags"]),
+                bool(clip["loops"]),
             )
             for clip in data["clips"]
         ),

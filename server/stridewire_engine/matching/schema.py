@@ -6,8 +6,9 @@ mean of those of its dimensions (Holden): a deviation for every dimension would 
 constant ones into noise.
 """
 
+import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from enum import StrEnum
 from functools import cached_property
 from typing import Any
@@ -25,13 +26,33 @@ class ChannelKind(StrEnum):
     """Joints relative to the root: x, y, z a joint; m."""
     VELOCITY = "velocity"
     """World velocity of joints, turned into the root's frame: x, y, z a joint; m/s."""
+    HEADING = "heading"
+    """Forward axis of joints on the ground: x, z a joint; unitless."""
+    HEIGHT = "height"
+    """Joints above the ground: y a joint; m."""
+    CUSTOM = "custom"
+    """Numbers that the builder of the library supplies."""
     TRAJECTORY_POSITION = "trajectory-position"
-    """Root in the future: x, z a time; m."""
+    """Root in the future or past: x, z a time; m."""
     TRAJECTORY_DIRECTION = "trajectory-direction"
-    """Root's forward axis in the future: x, z a time; unitless."""
+    """Root's forward axis in the future or past: x, z a time; unitless."""
 
 
+_DIMENSIONS_A_JOINT = {
+    ChannelKind.POSITION: 3,
+    ChannelKind.VELOCITY: 3,
+    ChannelKind.HEADING: 2,
+    ChannelKind.HEIGHT: 1,
+}
 _TRAJECTORY = {ChannelKind.TRAJECTORY_POSITION, ChannelKind.TRAJECTORY_DIRECTION}
+
+
+MAX_TIME = 5.0
+"""Furthest that a trajectory looks ahead or back; seconds."""
+
+
+class SchemaError(LibraryError):
+    """A feature schema is malformed; the message names the channel and the fix."""
 
 
 @dataclass(frozen=True)
@@ -42,18 +63,38 @@ class Channel:
     kind: ChannelKind
     weight: float
     joints: tuple[str, ...] = ()
-    """Joints measured; for positions and velocities."""
+    """Joints measured; for positions, velocities, headings and heights."""
     times: tuple[float, ...] = ()
-    """Seconds ahead; for trajectories."""
+    """Seconds ahead, negative ones back; for trajectories."""
+    size: int = 0
+    """Number of features; for custom ones."""
+
+    def __post_init__(self) -> None:
+        wanted = "times" if self.is_trajectory else "joints"
+        if self.kind is ChannelKind.CUSTOM:
+            wanted = "size"
+        if not getattr(self, wanted):
+            raise SchemaError(f"channel {self.name!r} of kind {self.kind} needs {wanted}")
+        if not (math.isfinite(self.weight) and self.weight >= 0.0):
+            raise SchemaError(
+                f"channel {self.name!r} has weight {self.weight}; allowed are finite numbers from 0"
+            )
+        if 0.0 in self.times or not all(abs(time) <= MAX_TIME for time in self.times):
+            raise SchemaError(
+                f"channel {self.name!r} has times {self.times}; allowed are seconds up to "
+                f"{MAX_TIME:g} ahead or back, but not 0"
+            )
 
     @property
     def dimensions(self) -> int:
         """Number of features."""
-        return 2 * len(self.times) if self.kind in _TRAJECTORY else 3 * len(self.joints)
+        if self.kind is ChannelKind.CUSTOM:
+            return self.size
+        return 2 * len(self.times) or _DIMENSIONS_A_JOINT[self.kind] * len(self.joints)
 
     @property
     def is_trajectory(self) -> bool:
-        """Whether the channel describes where the root goes, not what the pose is."""
+        """Whether the channel describes the root's way, not what the pose is."""
         return self.kind in _TRAJECTORY
 
 
@@ -63,6 +104,15 @@ class Schema:
 
     name: str
     channels: tuple[Channel, ...]
+
+    def __post_init__(self) -> None:
+        names = [channel.name for channel in self.channels]
+        twice = [name for name in names if names.count(name) > 1]
+        if twice or not names:
+            what = f"two channels are called {twice[0]!r}" if twice else "there is no channel"
+            raise SchemaError(f"feature schema {self.name!r}: {what}")
+        if not self.weights.any():
+            raise SchemaError(f"feature schema {self.name!r}: all weights are 0")
 
     @cached_property
     def dimensions(self) -> int:
@@ -91,8 +141,9 @@ class Schema:
 
     @cached_property
     def trajectory_times(self) -> tuple[float, ...]:
-        """All times ahead at which the root is asked for, ascending."""
-        return tuple(sorted({time for channel in self.channels for time in channel.times}))
+        """All times ahead at which the root is asked for, ascending; none back."""
+        times = {time for channel in self.channels for time in channel.times}
+        return tuple(sorted(time for time in times if time > 0.0))
 
     def slice(self, channel: Channel) -> slice:
         """Return where a channel's features lie."""
@@ -108,36 +159,31 @@ class Schema:
         """Read a schema back from plain data.
 
         Raises:
-            LibraryError: If it is not understood.
+            SchemaError: If it is not understood.
         """
         try:
-            channels = tuple(
-                Channel(
-                    channel["name"],
-                    ChannelKind(channel["kind"]),
-                    float(channel["weight"]),
-                    tuple(channel["joints"]),
-                    tuple(channel["times"]),
-                )
-                for channel in data["channels"]
-            )
+            channels = tuple(_channel(entry) for entry in data["channels"])
             return cls(str(data["name"]), channels)
-        except (KeyError, TypeError, ValueError) as error:
-            raise LibraryError(f"the feature schema is not understood: {error}") from error
+        except KeyError as error:
+            raise SchemaError(f"the feature schema lacks {error}") from error
+        except TypeError as error:
+            raise SchemaError(f"the feature schema is not understood: {error}") from error
 
 
-_TIMES = (20 / 60, 40 / 60, 60 / 60)
-_FEET = ("LeftFoot", "RightFoot")
-
-LOCOMOTION = Schema(
-    "locomotion",
-    (
-        Channel("foot-position", ChannelKind.POSITION, 0.5625, joints=_FEET),
-        Channel("foot-velocity", ChannelKind.VELOCITY, 1.0, joints=_FEET),
-        Channel("hips-velocity", ChannelKind.VELOCITY, 1.0, joints=("Hips",)),
-        Channel("trajectory-position", ChannelKind.TRAJECTORY_POSITION, 1.0, times=_TIMES),
-        Channel("trajectory-direction", ChannelKind.TRAJECTORY_DIRECTION, 2.25, times=_TIMES),
-    ),
-)
-"""The classic 27 features of Holden's *Motion-Matching*, its weights squared since cost is
-proportional to w."""
+def _channel(entry: Mapping[str, Any]) -> Channel:
+    kinds = [kind.value for kind in ChannelKind]
+    if entry["kind"] not in kinds:
+        raise SchemaError(
+            f"channel {entry['name']!r} has kind {entry['kind']!r}; kinds: {', '.join(kinds)}"
+        )
+    unknown = set(entry) - {field.name for field in fields(Channel)}
+    if unknown:
+        raise SchemaError(f"channel {entry['name']!r} has unknown {', '.join(sorted(unknown))}")
+    return Channel(
+        str(entry["name"]),
+        ChannelKind(entry["kind"]),
+        float(entry.get("weight", 1.0)),
+        tuple(entry.get("joints", ())),
+        tuple(float(time) for time in entry.get("times", ())),
+        int(entry.get("size", 0)),
+    )

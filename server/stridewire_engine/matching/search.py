@@ -1,17 +1,19 @@
-"""The search: candidates from the index, exact costs, the own neighbourhood left out."""
+"""The search: candidates from the index, exact costs, what is excluded left out."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from stridewire.motion.array_types import Flags, Floats, Indices
 from stridewire_engine.library import Library, LibraryError
+from stridewire_engine.matching.candidates import Candidates, CandidateSet
 from stridewire_engine.matching.features import Normalisation
-from stridewire_engine.matching.index import ExactIndex
+from stridewire_engine.matching.index import ExactIndex, augment_queries
 from stridewire_engine.matching.schema import Schema
 
 NEIGHBOURHOOD_FRAMES = 20
-"""Rows nearer than this to the one now playing are the same moment, not another."""
+"""Rows nearer than this to an excluded one are the same moment, not another."""
 _CANDIDATES = 64
 """More than a whole neighbourhood, so that one call nearly always suffices."""
 
@@ -26,9 +28,21 @@ class Found:
     rows: Indices
     """`(N, k)` rows of the library."""
     costs: Floats
-    """`(N, k)` float64."""
+    """`(N, k)` float64, the rows' bias included."""
     channel_costs: Floats
-    """`(N, k, C)` float64; they add up to the costs."""
+    """`(N, k, C)` float64; with the bias they add up to the costs."""
+
+    @classmethod
+    def nothing(cls, queries: int, channels: int, k: int = 1) -> "Found":
+        """Return room for so many queries, nothing found yet."""
+        shape = (queries, k)
+        return cls(np.full(shape, -1), np.full(shape, np.inf), np.zeros((*shape, channels)))
+
+    def put(self, which: Indices, part: "Found") -> None:
+        """Write what was found for some of the queries."""
+        self.rows[which] = part.rows
+        self.costs[which] = part.costs
+        self.channel_costs[which] = part.channel_costs
 
 
 class Matcher:
@@ -53,31 +67,48 @@ class Matcher:
                 f"library {library.name!r} has no frame that a search may choose: every clip is "
                 f"shorter than the horizon of {self.schema.horizon:g} s; add longer clips"
             )
-        self._index = ExactIndex(self.schema, library.features, library.startable)
+        self.bias = row_bias(library, data.get("bias_by_tag", {}), self.typical_cost)
+        """`(F,)` float32 cost that a row carries for its tags."""
+        self.candidates = Candidates(library, self.schema, self.bias)
 
-    def __len__(self) -> int:
-        """Return the number of rows that may be chosen."""
-        return len(self._index)
+    def search(
+        self,
+        queries: Floats,
+        weights: Floats,
+        excluded: Indices,
+        k: int = 1,
+        candidates: CandidateSet | None = None,
+    ) -> Found:
+        """Find the nearest rows outside the neighbourhoods of excluded ones.
 
-    def search(self, queries: Floats, weights: Floats, excluded: Indices, k: int = 1) -> Found:
-        """Find the nearest rows outside the neighbourhood of excluded ones.
-
-        Costs are exact, row by row in float64; ties go to the lowest row. If the neighbourhood
-        hides too many candidates, the index is asked again for more.
+        Costs are exact, row by row in float64; ties go to the lowest row. If exclusions hide too
+        many candidates, the index is asked again for more, in the end for all there are.
 
         Args:
             queries: `(N, D)` normalised features.
-            weights: `(N, C)`.
+            weights: `(N, C)` of the channels.
             excluded: `(N, E)` rows whose neighbourhood is left out; negative for none.
             k: Number of rows wanted.
+            candidates: Rows that may be chosen; None for all.
         """
-        ask = k - 1 + _CANDIDATES * max(1, excluded.shape[1])
-        while True:
-            candidates = self._index.search(queries, weights, ask)
-            allowed = self._outside(candidates, excluded)
-            if ask >= len(self._index) or np.all(allowed.sum(axis=1) >= k):
-                return self._rank(queries, weights, candidates, allowed, k)
-            ask *= 4
+        among = candidates or self.candidates.everything
+        found = self._search(queries, weights, excluded, k, among, k - 1 + _CANDIDATES)
+        ask = 4 * (k - 1 + _CANDIDATES)
+        while len(lacking := np.flatnonzero(~np.isfinite(found.costs[:, -1]))):
+            again = self._search(
+                queries[lacking],
+                weights[lacking],
+                excluded[lacking],
+                k,
+                among,
+                ask,
+                exhaustive=True,
+            )
+            found.put(lacking, again)
+            if ask >= len(among):
+                break
+            ask *= 8
+        return found
 
     def costs(self, queries: Floats, weights: Floats, rows: Indices) -> Floats:
         """Return exact costs by channel `(N, K, C)`, float64, of `rows` `(N, K)`."""
@@ -85,28 +116,62 @@ class Matcher:
         squares = np.add.reduceat(difference * difference, self.schema.starts, axis=-1)
         return np.asarray(squares * weights[:, None])
 
-    def _outside(self, candidates: Indices, excluded: Indices) -> Flags:
-        allowed: Flags = np.ones(candidates.shape, np.bool_)
+    def near(self, rows: Indices, others: Indices) -> Flags:
+        """Tell which rows are in the neighbourhood of others `(…)`, negative ones of nothing."""
         clip_of = self.library.clip_of
+        close = np.abs(rows - others) < NEIGHBOURHOOD_FRAMES
+        same = clip_of[rows] == clip_of[np.maximum(others, 0)]
+        return np.asarray(close & same & (others >= 0))
+
+    def _search(
+        self,
+        queries: Floats,
+        weights: Floats,
+        excluded: Indices,
+        k: int,
+        among: CandidateSet,
+        ask: int,
+        *,
+        exhaustive: bool = False,
+    ) -> Found:
+        augmented = augment_queries(self.schema, queries, weights)
+        rows = among.nearest(augmented, ask, exhaustive=exhaustive)
+        allowed = rows >= 0
         for column in excluded.T:
-            near = np.abs(candidates - column[:, None]) < NEIGHBOURHOOD_FRAMES
-            same = clip_of[candidates] == clip_of[np.maximum(column, 0)][:, None]
-            allowed &= ~(near & same & (column >= 0)[:, None])
-        return allowed
+            allowed &= ~self.near(rows, column[:, None])
+        return self._rank(queries, weights, rows, allowed, k)
 
     def _rank(
-        self, queries: Floats, weights: Floats, candidates: Indices, allowed: Flags, k: int
+        self, queries: Floats, weights: Floats, rows: Indices, allowed: Flags, k: int
     ) -> Found:
-        by_channel = self.costs(queries, weights, candidates)
-        costs = np.where(allowed, by_channel.sum(axis=-1), np.inf)
-        order = np.lexsort((candidates, costs), axis=-1)[:, :k]
-        rows = np.take_along_axis(candidates, order, axis=1)
+        by_channel = self.costs(queries, weights, rows)
+        costs = np.where(allowed, by_channel.sum(axis=-1) + self.bias[rows], np.inf)
+        order = np.lexsort((rows, costs), axis=-1)[:, :k]
+        count = order.shape[1]
+        found = Found.nothing(len(rows), len(self.schema.channels), k)
         best = np.take_along_axis(costs, order, axis=1)
-        return Found(
-            np.where(np.isfinite(best), rows, -1),
-            best,
-            np.take_along_axis(by_channel, order[..., None], axis=1),
+        found.rows[:, :count] = np.where(
+            np.isfinite(best), np.take_along_axis(rows, order, axis=1), -1
         )
+        found.costs[:, :count] = best
+        found.channel_costs[:, :count] = np.take_along_axis(by_channel, order[..., None], axis=1)
+        return found
+
+
+def row_bias(library: Library, bias_by_tag: Mapping[str, float], unit: float) -> Floats:
+    """Return the cost `(F,)` that rows carry for their tags: positive avoids, negative favours.
+
+    Args:
+        library: With the tags.
+        bias_by_tag: In units of `unit`; negative ones are made up for by a constant on all others,
+            so that no cost is negative.
+        unit: The library's typical cost.
+    """
+    bias = np.zeros(len(library.root_yaw), np.float32)
+    for tag, amount in bias_by_tag.items():
+        bit = np.uint64(1 << library.tag_names.index(tag))
+        bias[library.tag_bits & bit != 0] += np.float32(amount * unit)
+    return np.asarray(bias - min(bias.min(), np.float32(0.0)))
 
 
 def typical_cost(schema: Schema, features: Floats, startable: Flags, clip_of: Indices) -> float:
@@ -118,11 +183,11 @@ def typical_cost(schema: Schema, features: Floats, startable: Flags, clip_of: In
         startable: `(F,)` rows that may be chosen.
         clip_of: `(F,)` clip of each row.
     """
-    index = ExactIndex(schema, features, startable)
-    chosen = np.flatnonzero(startable)
-    sample = chosen[np.linspace(0, len(chosen) - 1, min(1000, len(chosen))).astype(int)]
+    rows = np.flatnonzero(startable)
+    index = ExactIndex(schema, features, np.zeros(len(features), np.float32), rows)
+    sample = rows[np.linspace(0, len(rows) - 1, min(1000, len(rows))).astype(int)]
     weights = np.broadcast_to(schema.weights, (len(sample), len(schema.channels)))
-    found = index.search(features[sample], weights, 2 * _CANDIDATES)
+    found = index.search(augment_queries(schema, features[sample], weights), 2 * _CANDIDATES)
     other = (np.abs(found - sample[:, None]) >= NEIGHBOURHOOD_FRAMES) | (
         clip_of[found] != clip_of[sample][:, None]
     )

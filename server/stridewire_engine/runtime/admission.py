@@ -3,7 +3,7 @@
 Field paths are those of the wire. Fields of later versions are refused by name.
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 
 import numpy as np
 
@@ -19,6 +19,10 @@ from stridewire._messages import (
     Trajectory,
 )
 from stridewire.motion.array_types import Flags, Floats
+from stridewire_engine.library import Library
+from stridewire_engine.matching.gaits import gait_filter
+from stridewire_engine.matching.schema import Schema
+from stridewire_engine.matching.search import Matcher
 from stridewire_engine.runtime.characters import MAX_TRAJECTORY_POINTS
 from stridewire_engine.stitchers import STITCHERS
 
@@ -27,13 +31,19 @@ _MAX_ID = 2**32 - 1
 _MAX_TRAJECTORY_S = 10.0
 _MIN_RATE_HZ, _MAX_RATE_HZ = 10.0, 240.0
 _MAX_CREDITS = 3600
+_MAX_WEIGHT = 1e6
 NOT_YET = "is not implemented yet; leave it out"
 
 STITCHER_NAMES = tuple(stitcher.name for stitcher in STITCHERS)
 
 
-def check_open(message: Open, limits: Limits) -> None:
+def check_open(message: Open, limits: Limits, matcher: Matcher) -> None:
     """Refuse an Open that is malformed or asks for what does not exist yet.
+
+    Args:
+        message: The Open.
+        limits: That hold.
+        matcher: Of the library that it names.
 
     Raises:
         InvalidRequestError: With one violation a field.
@@ -49,7 +59,7 @@ def check_open(message: Open, limits: Limits) -> None:
     found = [*_open_violations(message, limits)]
     taken: set[int] = set()
     for i, spec in enumerate(message.characters):
-        found += check_spec(f"open.characters[{i}]", spec, taken)
+        found += check_spec(f"open.characters[{i}]", spec, taken, matcher)
         taken.add(spec.id)
     if found:
         raise InvalidRequestError.of(*found)
@@ -59,23 +69,22 @@ def later_fields(spec: CharacterSpec) -> Iterator[str]:
     """Yield the fields of a character that belong to later versions and are set."""
     if spec.height_m:
         yield "height_m"
-    if spec.filter:
-        yield "filter"
-    if spec.weights:
-        yield "weights"
     if spec.responsiveness is not None:
         yield "responsiveness"
     if spec.rate_divider > 1:
         yield "rate_divider"
 
 
-def check_spec(path: str, spec: CharacterSpec, taken: Collection[int]) -> Iterator[Violation]:
+def check_spec(
+    path: str, spec: CharacterSpec, taken: Collection[int], matcher: Matcher
+) -> Iterator[Violation]:
     """Yield what is wrong with a character to be added.
 
     Args:
         path: Of the character.
         spec: The character.
         taken: Ids that the session has already.
+        matcher: Of the library that it is added to.
     """
     if not 0 <= spec.id <= _MAX_ID:
         yield Violation(f"{path}.id", f"{spec.id} is no id; allowed are 0 to {_MAX_ID}")
@@ -83,12 +92,49 @@ def check_spec(path: str, spec: CharacterSpec, taken: Collection[int]) -> Iterat
         yield Violation(f"{path}.id", f"{spec.id} is taken; ids are unique within a session")
     yield from check_ground_pose(f"{path}.root", spec.root)
     yield from check_stitcher(f"{path}.stitcher", spec.stitcher)
+    yield from check_filter(f"{path}.filter", spec.filter, matcher)
+    yield from check_weights(f"{path}.weights", spec.weights, matcher.schema)
 
 
 def check_stitcher(path: str, name: str) -> Iterator[Violation]:
     """Yield what is wrong with a stitcher's name; empty means the default."""
     if name and name not in STITCHER_NAMES:
         yield Violation(path, f"{name!r} is not present; present are {', '.join(STITCHER_NAMES)}")
+
+
+def check_filter(path: str, text: str, matcher: Matcher) -> tuple[Violation, ...]:
+    """Return what is wrong with a tag expression; empty means all."""
+    try:
+        matcher.candidates.get(text, path)
+    except InvalidRequestError as error:
+        return error.violations
+    return ()
+
+
+def check_gait(path: str, gait: str, library: Library) -> tuple[Violation, ...]:
+    """Return what is wrong with a gait."""
+    try:
+        gait_filter(gait, path, library.tag_names)
+    except InvalidRequestError as error:
+        return error.violations
+    return ()
+
+
+def check_weights(path: str, weights: Mapping[str, float], schema: Schema) -> Iterator[Violation]:
+    """Yield what is wrong with weights by channel."""
+    names = [channel.name for channel in schema.channels]
+    for name, weight in weights.items():
+        if name not in names:
+            yield Violation(f"{path}[{name!r}]", f"is no channel; channels are {', '.join(names)}")
+        elif not 0.0 <= weight <= _MAX_WEIGHT:
+            yield Violation(f"{path}[{name!r}]", f"{weight}; allowed are 0 to {_MAX_WEIGHT:g}")
+    if weights and not merged_weights(weights, schema).any():
+        yield Violation(path, "all channels have weight 0, so nothing could be compared")
+
+
+def merged_weights(weights: Mapping[str, float], schema: Schema) -> Floats:
+    """Return a weight `(C,)` for every channel: the schema's where none is given."""
+    return np.array([weights.get(c.name, c.weight) for c in schema.channels], np.float64)
 
 
 def check_ground_pose(path: str, root: GroundPose) -> Iterator[Violation]:
@@ -133,13 +179,15 @@ def check_facing(facing: Floats) -> tuple[Flags, Iterator[Violation]]:
     return good, violations()
 
 
-def check_sparse(path: str, sparse: Sparse, *, known: bool) -> list[Violation]:
+def check_sparse(path: str, sparse: Sparse, matcher: Matcher, *, known: bool) -> list[Violation]:
     """Return what is wrong with the rarer controls of one character."""
-    found = [
-        Violation(f"{path}.{name}", NOT_YET)
-        for name in ("filter", "gait", "ground")
-        if getattr(sparse, name) is not None
-    ]
+    found = [] if sparse.ground is None else [Violation(f"{path}.ground", NOT_YET)]
+    if sparse.filter is not None:
+        found += check_filter(f"{path}.filter", sparse.filter, matcher)
+    if sparse.gait is not None:
+        found += check_gait(f"{path}.gait", sparse.gait, matcher.library)
+    if sparse.filter is not None and sparse.gait is not None:
+        found.append(Violation(f"{path}.gait", "is sugar for a filter; give one of the two"))
     if not known:
         found.append(
             Violation(
@@ -148,7 +196,7 @@ def check_sparse(path: str, sparse: Sparse, *, known: bool) -> list[Violation]:
             )
         )
     if sparse.trajectory is not None:
-        found += _check_trajectory(f"{path}.trajectory", sparse.trajectory)
+        found += check_trajectory(f"{path}.trajectory", sparse.trajectory)
     if sparse.root_correction is not None:
         found += check_ground_pose(f"{path}.root_correction.root", sparse.root_correction.root)
         if sparse.root_correction.mode not in tuple(CorrectionMode):
@@ -156,18 +204,8 @@ def check_sparse(path: str, sparse: Sparse, *, known: bool) -> list[Violation]:
     return found
 
 
-def check_trajectory(path: str, trajectory: Trajectory) -> None:
-    """Refuse a malformed trajectory.
-
-    Raises:
-        InvalidRequestError: With one violation a field.
-    """
-    found = [*_check_trajectory(path, trajectory)]
-    if found:
-        raise InvalidRequestError.of(*found)
-
-
-def _check_trajectory(path: str, trajectory: Trajectory) -> Iterator[Violation]:
+def check_trajectory(path: str, trajectory: Trajectory) -> Iterator[Violation]:
+    """Yield what is wrong with a trajectory."""
     times = np.asarray(trajectory.times_s)
     count = len(times)
     if not 1 <= count <= MAX_TRAJECTORY_POINTS:

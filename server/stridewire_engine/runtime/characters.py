@@ -11,8 +11,14 @@ MAX_TRAJECTORY_POINTS = 32
 """Most points of a trajectory that a caller gives."""
 
 
+SHOWN_JOINTS = ("LeftFoot", "RightFoot", "LeftToe", "RightToe", "Hips")
+"""Joints whose shown place is remembered for the next query."""
+RECENT_CHOICES = 4
+"""So many choices of a character are remembered."""
+
+
 def _column(*shape: int | str, dtype: type = np.float32, fill: float = 0.0) -> Any:
-    """Describe an array `(N, *shape)`; the letter J stands for the number of joints."""
+    """Describe an array `(N, *shape)`; J stands for joints, C for channels."""
     return field(metadata={"shape": shape, "dtype": dtype, "fill": fill})
 
 
@@ -36,6 +42,10 @@ class Characters:
     foot_lock: Flags = _column(dtype=np.bool_, fill=1)
     stitcher: Indices = _column(dtype=np.int8)
     """Index into `STITCHERS`."""
+    filter: Indices = _column(dtype=np.int32)
+    """Number of the candidate set in the crowd's table; 0 is all."""
+    weights: Floats = _column("C", dtype=np.float64)
+    """Of the schema's channels."""
 
     # the simulated root
     sim_position: Floats = _column(2, dtype=np.float64)
@@ -66,6 +76,12 @@ class Characters:
     searched_yaw: Floats = _column(dtype=np.float64)
     """Goal yaw at the last search."""
     force_search: Flags = _column(dtype=np.bool_)
+    recent: Indices = _column(RECENT_CHOICES, dtype=np.int64, fill=-1)
+    """Rows chosen last, the newest first."""
+    recent_time: Floats = _column(RECENT_CHOICES, dtype=np.float64)
+    """`time` at which they were chosen."""
+    root_speed: Floats = _column(dtype=np.float64)
+    """Speed of the root in the last tick, m/s."""
 
     # the stitcher
     offset_hips: Vectors = _column(3)
@@ -85,25 +101,24 @@ class Characters:
     toe_offset_velocity: Vectors = _column(2, 3)
 
     # what was shown last
-    shown_world: Vectors = _column(3, 3, dtype=np.float64)
-    """Left ankle, right ankle and hips in the world."""
-    shown_ankle: Vectors = _column(2, 3)
-    """Ankles in the root's frame."""
-    shown_ankle_velocity: Vectors = _column(2, 3)
-    """World velocity of the ankles in the root's frame."""
-    shown_hips_velocity: Vectors = _column(3)
-    """World velocity of the hips in the root's frame."""
+    shown_world: Vectors = _column(len(SHOWN_JOINTS), 3, dtype=np.float64)
+    """`SHOWN_JOINTS` in the world."""
+    shown_local: Vectors = _column(len(SHOWN_JOINTS), 3)
+    """The same in the root's frame."""
+    shown_velocity: Vectors = _column(len(SHOWN_JOINTS), 3)
+    """Their world velocity in the root's frame."""
     tag_bits: Indices = _column(dtype=np.uint64)
     contacts: Flags = _column(4, dtype=np.bool_)
     time: Floats = _column(dtype=np.float64)
     """Seconds since the character was added."""
 
     @classmethod
-    def allocate(cls, rows: int, joints: int) -> "Characters":
+    def allocate(cls, rows: int, joints: int, channels: int) -> "Characters":
         """Return fresh rows."""
+        sizes = {"J": joints, "C": channels}
         arrays = {}
         for column in fields(cls):
-            shape = [joints if n == "J" else n for n in column.metadata["shape"]]
+            shape = [sizes.get(n, n) for n in column.metadata["shape"]]
             arrays[column.name] = np.full(
                 (rows, *shape), column.metadata["fill"], column.metadata["dtype"]
             )
@@ -112,10 +127,9 @@ class Characters:
     def __len__(self) -> int:
         return len(self.clip)
 
-    @property
-    def joints(self) -> int:
-        """Number of joints."""
-        return int(self.offset_rotations.shape[1])
+    def fresh(self, rows: int) -> "Characters":
+        """Return fresh rows of the same shapes."""
+        return self.allocate(rows, self.offset_rotations.shape[1], self.weights.shape[1])
 
     def take(self, rows: slice | Indices) -> "Characters":
         """Return some rows: views for a slice, copies for indices."""

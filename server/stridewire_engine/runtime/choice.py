@@ -1,5 +1,6 @@
 """Choice: which characters search in this tick, and whether they stay or jump."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -7,14 +8,19 @@ import numpy as np
 from stridewire._messages import TransitionReason
 from stridewire.motion.array_types import Flags, Floats, Indices
 from stridewire.motion.springs import wrap_angle
-from stridewire_engine.matching.features import trajectory_features
+from stridewire_engine.matching.candidates import CandidateSet
 from stridewire_engine.matching.schema import ChannelKind
-from stridewire_engine.matching.search import Matcher
-from stridewire_engine.runtime import intent, sampling
+from stridewire_engine.matching.search import Found, Matcher
+from stridewire_engine.runtime import query, sampling
 from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.runtime.intent import Prediction
 from stridewire_engine.runtime.settings import TickSettings
-from stridewire_engine.stitchers import STITCHERS
+
+Sets = Mapping[int, CandidateSet]
+"""The crowd's candidate sets by the number under which rows name them."""
+
+EXCLUDED_BECAUSE = ("is playing now", "is the mirror image of what is playing now")
+RECENTLY_CHOSEN = "was chosen a moment ago"
 
 
 class Jumps(NamedTuple):
@@ -27,12 +33,23 @@ class Jumps(NamedTuple):
     from_time: Floats
     to_clip: Indices
     to_time: Floats
+    to_row: Indices
     cost: Floats
     stay_cost: Floats
+    bias: Floats
+    """By how much staying had to be beaten."""
     channel_costs: Floats
     """`(M, C)`."""
     reason: Indices
     """Values of `TransitionReason`."""
+    queries: Floats
+    """`(M, D)` what was looked for."""
+    weights: Floats
+    """`(M, C)`."""
+    excluded: Indices
+    """`(M, E)` rows whose neighbourhood was left out: playing, its mirror image, recent ones."""
+    sets: Indices
+    """`(M,)` numbers of the candidate sets."""
 
 
 def due(state: Characters, matcher: Matcher, dt: Floats, settings: TickSettings) -> Indices:
@@ -48,7 +65,7 @@ def due(state: Characters, matcher: Matcher, dt: Floats, settings: TickSettings)
         turned > settings.facing_jump
     )
     reason = np.zeros(len(state), np.int8)
-    reason[state.until_search <= 0.0] = TransitionReason.BETTER_MATCH
+    reason[(state.until_search <= 0.0) & ~_idle(state, settings)] = TransitionReason.BETTER_MATCH
     reason[jumped & waited] = TransitionReason.CONTROL_CHANGE
     reason[state.force_search] = TransitionReason.FORCED
     reason[_at_end(state, matcher, dt, settings)] = TransitionReason.CLIP_END
@@ -60,6 +77,7 @@ def due(state: Characters, matcher: Matcher, dt: Floats, settings: TickSettings)
 def choose(
     state: Characters,
     matcher: Matcher,
+    sets: Sets,
     prediction: Prediction,
     reason: Indices,
     settings: TickSettings,
@@ -67,82 +85,127 @@ def choose(
     """Search for the characters that have a reason, and decide.
 
     A character jumps if the best other moment costs less than staying by more than the bias. At the
-    end of its clip, and where it begins, it takes the best there is.
+    end of its clip, where its filter no longer holds, and where it begins, it takes the best there
+    is.
 
     Args:
         state: N rows; its search clocks are set anew.
         matcher: The library's.
+        sets: Candidates by number.
         prediction: Where the simulated roots will be, `(N, K, …)` in the world.
         reason: `(N,)` from `due`.
         settings: Biases and intervals.
     """
+    library = matcher.library
     searching = np.flatnonzero(reason)
     rows = state.take(searching)
+    why = reason[searching]
     starting = rows.clip < 0
-    playing = sampling.moments(matcher.library, np.maximum(rows.clip, 0), rows.clip_time).nearest
+    playing = sampling.moments(library, np.maximum(rows.clip, 0), rows.clip_time).nearest
     future = Prediction(prediction.positions[searching], prediction.yaws[searching])
-    query = _queries(rows, matcher, playing, intent.to_root_frame(rows, future))
-    weights = _weights(matcher, starting)
-    excluded = np.where(starting, -1, playing)[:, None]
-    found = matcher.search(query, weights, excluded)
-    stay = matcher.costs(query, weights, playing[:, None]).sum(axis=-1)[:, 0]
-    bias = settings.continuing_bias * matcher.typical_cost
-    must = np.isin(reason[searching], (TransitionReason.CLIP_END, TransitionReason.START))
-    better = found.costs[:, 0] + bias < stay * (1.0 - settings.least_improvement)
-    jump = np.isfinite(found.costs[:, 0]) & (must | better)
+    queries = query.build(rows, matcher, playing, future)
+    weights = _weights(matcher, rows, starting)
+    excluded = _excluded(matcher, rows, playing, starting, settings)
+    found, satisfied = _search(matcher, sets, rows.filter, queries, weights, excluded, playing)
+    why = np.where(~satisfied & ~starting, TransitionReason.FILTER_CHANGE, why)
+    stay = matcher.costs(queries, weights, playing[:, None]).sum(axis=-1)[:, 0]
+    stay += matcher.bias[playing]
+    bias = settings.continuing_bias * matcher.typical_cost + settings.least_improvement * stay
+    must = np.isin(why, _MUST)
+    jump = np.flatnonzero(found.rows[:, 0] >= 0)
+    jump = jump[(must | (found.costs[:, 0] + bias < stay))[jump]]
     _restart_clocks(state, searching, settings)
     target = found.rows[jump, 0]
-    clip = matcher.library.clip_of[target]
+    clip = library.clip_of[target]
     return Jumps(
         characters=searching[jump],
         from_clip=rows.clip[jump],
         from_time=rows.clip_time[jump],
         to_clip=clip.astype(np.int32),
-        to_time=(target - matcher.library.clip_starts[clip]) / matcher.library.frame_rate,
+        to_time=(target - library.clip_starts[clip]) / library.frame_rate,
+        to_row=target,
         cost=found.costs[jump, 0],
         stay_cost=stay[jump],
+        bias=bias[jump],
         channel_costs=found.channel_costs[jump, 0],
-        reason=reason[searching[jump]],
+        reason=why[jump],
+        queries=queries[jump],
+        weights=weights[jump],
+        excluded=excluded[jump],
+        sets=rows.filter[jump],
     )
+
+
+_MUST = (TransitionReason.CLIP_END, TransitionReason.START, TransitionReason.FILTER_CHANGE)
+
+
+def _search(
+    matcher: Matcher,
+    sets: Sets,
+    numbers: Indices,
+    queries: Floats,
+    weights: Floats,
+    excluded: Indices,
+    playing: Indices,
+) -> tuple[Found, Flags]:
+    """Search once for each distinct filter; also tell whether what is playing satisfies it."""
+    found = Found.nothing(len(queries), len(matcher.schema.channels))
+    satisfied = np.ones(len(queries), np.bool_)
+    for number in np.unique(numbers):
+        mine = np.flatnonzero(numbers == number)
+        among = sets[int(number)]
+        part = matcher.search(queries[mine], weights[mine], excluded[mine], 1, among)
+        lacking = np.flatnonzero(part.rows[:, 0] < 0)
+        if len(lacking):
+            # a set smaller than what is excluded: better the same again than nothing
+            whole = np.full((len(lacking), 1), -1)
+            again = mine[lacking]
+            part.put(lacking, matcher.search(queries[again], weights[again], whole, 1, among))
+        found.put(mine, part)
+        satisfied[mine] = among.satisfied[playing[mine]]
+    return found, satisfied
+
+
+def _idle(state: Characters, settings: TickSettings) -> Flags:
+    """Tell who stands and is asked to go on standing: no search, hence no fidgeting jumps."""
+    asked = np.hypot(state.desired_velocity[:, 0], state.desired_velocity[:, 1])
+    moving = np.hypot(state.sim_velocity[:, 0], state.sim_velocity[:, 1])
+    fastest = np.maximum(np.maximum(asked, moving), state.root_speed)
+    turn = np.abs(wrap_angle(state.goal_yaw - state.root_yaw))
+    still = (fastest < settings.idle_speed) & (turn < settings.idle_turn)
+    return np.asarray(still & ~state.has_path)
 
 
 def _at_end(state: Characters, matcher: Matcher, dt: Floats, settings: TickSettings) -> Flags:
     library = matcher.library
-    length = (library.clip_frames[np.maximum(state.clip, 0)] - 1) / library.frame_rate
-    return np.asarray(state.clip_time + dt > length - settings.clip_end_margin)
+    clip = np.maximum(state.clip, 0)
+    length = (library.clip_frames[clip] - 1) / library.frame_rate
+    ends = state.clip_time + dt > length - settings.clip_end_margin
+    return np.asarray(ends & ~library.loops[clip])
 
 
-def _queries(rows: Characters, matcher: Matcher, playing: Indices, future: Prediction) -> Floats:
-    """Build normalised queries `(M, D)`.
-
-    The pose part is the stored features of the frame now playing, so that staying costs nothing
-    there; while a transition is being hidden it is what is shown.
-    """
-    schema = matcher.schema
-    query = matcher.library.features[playing].astype(np.float64)
-    settled = np.array([stitcher.settled_s for stitcher in STITCHERS])[rows.stitcher]
-    shown = (rows.since_jump < settled) | (rows.clip < 0)
-    shown_sources = {
-        (ChannelKind.POSITION, "LeftFoot", "RightFoot"): rows.shown_ankle,
-        (ChannelKind.VELOCITY, "LeftFoot", "RightFoot"): rows.shown_ankle_velocity,
-        (ChannelKind.VELOCITY, "Hips"): rows.shown_hips_velocity,
-    }
-    for channel in schema.channels:
-        columns = schema.slice(channel)
-        if channel.is_trajectory:
-            ahead = [schema.trajectory_times.index(time) for time in channel.times]
-            raw = trajectory_features(channel, future.positions[:, ahead], future.yaws[:, ahead])
-            query[:, columns] = matcher.normalisation.apply(raw, columns)
-        elif (source := shown_sources.get((channel.kind, *channel.joints))) is not None:
-            normal = matcher.normalisation.apply(source.reshape(len(rows), -1), columns)
-            query[:, columns] = np.where(shown[:, None], normal, query[:, columns])
-    return query
+def _excluded(
+    matcher: Matcher,
+    rows: Characters,
+    playing: Indices,
+    starting: Flags,
+    settings: TickSettings,
+) -> Indices:
+    """Return rows `(M, E)` whose neighbourhood is not to be chosen; -1 for none."""
+    library = matcher.library
+    twin = library.twins[library.clip_of[playing]]
+    frame = playing - library.clip_starts[library.clip_of[playing]]
+    mirrored = np.where(twin >= 0, library.clip_starts[twin] + frame, -1)
+    own = np.where(starting[:, None], -1, np.stack([playing, mirrored], axis=1))
+    young = rows.time[:, None] - rows.recent_time < settings.reselect_history
+    return np.concatenate([own, np.where(young, rows.recent, -1)], axis=1)
 
 
-def _weights(matcher: Matcher, starting: Flags) -> Floats:
-    weights = np.tile(matcher.schema.weights, (len(starting), 1))
+def _weights(matcher: Matcher, rows: Characters, starting: Flags) -> Floats:
+    weights = rows.weights.copy()
     # a character that begins has velocities and a way to go, but no pose yet
-    poses = np.array([channel.kind is ChannelKind.POSITION for channel in matcher.schema.channels])
+    channels = matcher.schema.channels
+    poses = np.array([not c.is_trajectory and c.kind is not ChannelKind.VELOCITY for c in channels])
     weights[np.ix_(starting, poses)] = 0.0
     return weights
 

@@ -19,15 +19,19 @@ from stridewire._messages import (
 )
 from stridewire.motion.array_types import Flags, Floats, Indices
 from stridewire.motion.springs import wrap_angle
+from stridewire_engine.matching.gaits import gait_filter
 from stridewire_engine.runtime import admission
 from stridewire_engine.runtime.characters import Characters
+from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.roster import Roster
 
+_KEPT = ("desired_velocity", "desired_facing", "foot_lock", "stitcher", "filter", "weights")
+"""What a character keeps when it is put somewhere else."""
 
-def apply_step(
-    roster: Roster, state: Characters, step: Step, limits: Limits
-) -> Iterator[Violation]:
+
+def apply_step(roster: Roster, crowd: Crowd, step: Step, limits: Limits) -> Iterator[Violation]:
     """Apply a step's controls and yield what was wrong with them."""
+    state = crowd.state
     places: Indices = np.arange(len(roster))
     if step.characters is not None and len(step.characters):
         places = roster.places(step.characters)
@@ -55,22 +59,27 @@ def apply_step(
     if facing is not None:
         state.desired_facing[rows] = facing[good]
     for i, sparse in enumerate(step.sparse):
-        yield from _apply_sparse(roster, state, f"step.sparse[{i}]", sparse)
+        yield from _apply_sparse(roster, crowd, f"step.sparse[{i}]", sparse)
 
 
 def place(state: Characters, row: int, position: tuple[float, float, float], yaw: float) -> None:
     """Put a character somewhere, without a history: it begins there with its next tick."""
-    kept = {
-        name: getattr(state, name)[row].copy()
-        for name in ("desired_velocity", "desired_facing", "foot_lock", "stitcher")
-    }
-    state.put(slice(row, row + 1), Characters.allocate(1, state.joints))
+    kept = {name: getattr(state, name)[row].copy() for name in _KEPT}
+    state.put(slice(row, row + 1), state.fresh(1))
     for name, value in kept.items():
         getattr(state, name)[row] = value
     state.root_position[row] = position
     state.sim_position[row] = position[0], position[2]
     for angle in (state.root_yaw, state.sim_yaw, state.goal_yaw):
         angle[row] = yaw
+
+
+def set_filter(crowd: Crowd, row: int, text: str) -> None:
+    """Limit a character's choice by an expression that was checked; a change searches at once."""
+    number = crowd.filter_number(text, "filter")
+    if number != crowd.state.filter[row]:
+        crowd.state.filter[row] = number
+        crowd.state.force_search[row] = True
 
 
 def follow(state: Characters, row: int, trajectory: Trajectory) -> None:
@@ -105,14 +114,19 @@ def _hold(roster: Roster, places: Indices, good: Flags, fine: Flags) -> Flags:
     return good & fine
 
 
-def _apply_sparse(roster: Roster, state: Characters, path: str, sparse: Sparse) -> list[Violation]:
+def _apply_sparse(roster: Roster, crowd: Crowd, path: str, sparse: Sparse) -> list[Violation]:
     at = roster.place(sparse.character)
-    wrong = admission.check_sparse(path, sparse, known=at >= 0)
+    wrong = admission.check_sparse(path, sparse, crowd.matcher, known=at >= 0)
     if wrong:
         if at >= 0:
             roster.flag(at, FrameFlag.HELD)
         return wrong
-    row = int(roster.rows[at])
+    row, state = int(roster.rows[at]), crowd.state
+    if sparse.filter is not None:
+        set_filter(crowd, row, sparse.filter)
+    if sparse.gait is not None:
+        tags = crowd.library.tag_names
+        set_filter(crowd, row, gait_filter(sparse.gait, path, tags))
     if sparse.trajectory is not None:
         follow(state, row, sparse.trajectory)
     if sparse.root_correction is not None:

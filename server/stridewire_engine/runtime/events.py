@@ -1,7 +1,7 @@
 """Events of a tick: kept as arrays, turned into messages only when somebody reads them."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import overload
 
@@ -17,9 +17,12 @@ from stridewire._messages import (
     TransitionReason,
 )
 from stridewire.motion.array_types import Indices
-from stridewire_engine.library import Library
-from stridewire_engine.matching.schema import Schema
+from stridewire_engine.matching.explanation import Exclusion, explain
+from stridewire_engine.matching.search import Matcher
+from stridewire_engine.runtime.choice import EXCLUDED_BECAUSE, RECENTLY_CHOSEN, Jumps, Sets
 from stridewire_engine.runtime.tick import Block
+
+_RUNNERS_UP = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +36,8 @@ class TickEvents(Sequence[Event]):
     """Ids."""
     frame: int
     detail: Detail
-    library: Library
-    schema: Schema
+    matcher: Matcher
+    sets: Sets
 
     def __len__(self) -> int:
         return len(self._events)
@@ -58,26 +61,52 @@ class TickEvents(Sequence[Event]):
             return
         inside = (jumps.characters >= self.rows.start) & (jumps.characters < self.rows.stop)
         costs = self.detail is Detail.COSTS
-        names = [channel.name for channel in self.schema.channels]
         for i in np.flatnonzero(inside):
             character = int(self.characters[jumps.characters[i] - self.rows.start])
-            begins = jumps.from_clip[i] < 0
+            clips = self.matcher.library.clips
+            from_clip = "" if jumps.from_clip[i] < 0 else clips[jumps.from_clip[i]].name
             reason = TransitionReason(int(jumps.reason[i]))
-            from_clip = "" if begins else self.library.clips[jumps.from_clip[i]].name
             if reason is TransitionReason.CLIP_END:
                 yield ClipEnd(character, self.frame, from_clip)
-            yield Transition(
+            transition = Transition(
                 character,
                 self.frame,
                 from_clip,
                 float(jumps.from_time[i]),
-                self.library.clips[jumps.to_clip[i]].name,
+                clips[jumps.to_clip[i]].name,
                 float(jumps.to_time[i]),
                 reason,
-                float(jumps.cost[i]) if costs else 0.0,
-                float(jumps.stay_cost[i]) if costs and not begins else 0.0,
-                dict(zip(names, jumps.channel_costs[i].tolist(), strict=True)) if costs else {},
             )
+            yield self._with_costs(transition, jumps, int(i)) if costs else transition
+
+    def _with_costs(self, transition: Transition, jumps: Jumps, i: int) -> Transition:
+        """Add what the choice cost, what else fitted and what was excluded."""
+        why = (*EXCLUDED_BECAUSE, *[RECENTLY_CHOSEN] * (jumps.excluded.shape[1] - 2))
+        exclusions = [
+            Exclusion(int(row), reason)
+            for row, reason in zip(jumps.excluded[i], why, strict=True)
+            if row >= 0
+        ]
+        # the chosen moment comes first among the matches
+        matches, excluded = explain(
+            self.matcher,
+            jumps.queries[i],
+            jumps.weights[i],
+            exclusions,
+            1 + _RUNNERS_UP,
+            self.sets[int(jumps.sets[i])],
+        )
+        names = [channel.name for channel in self.matcher.schema.channels]
+        begins = jumps.from_clip[i] < 0
+        return replace(
+            transition,
+            cost=float(jumps.cost[i]),
+            stay_cost=0.0 if begins else float(jumps.stay_cost[i]),
+            bias=0.0 if begins else float(jumps.bias[i]),
+            channels=dict(zip(names, jumps.channel_costs[i].tolist(), strict=True)),
+            runners_up=matches[1:],
+            excluded=excluded,
+        )
 
     def _contacts(self) -> Iterator[Event]:
         now, before = self.block.contacts[self.rows], self.block.contacts_before[self.rows]
@@ -89,6 +118,6 @@ class TickEvents(Sequence[Event]):
     def _tags(self) -> Iterator[Event]:
         entered = self.block.tags_entered[self.rows]
         for row in np.flatnonzero(entered):
-            for bit, name in enumerate(self.library.tag_names):
+            for bit, name in enumerate(self.matcher.library.tag_names):
                 if int(entered[row]) >> bit & 1:
                     yield TagEntered(int(self.characters[row]), self.frame, name)

@@ -100,7 +100,8 @@ def plant(
         pose.ankle + shift,
         quaternion.rotate(pose.shin, ahead),
     )
-    _remember(state, limb.end, hips, dt)
+    toes = limb.end + (pose.toe - pose.ankle)
+    _remember(state, np.concatenate([limb.end, toes, hips[:, None]], axis=1), dt)
     bent = rotations.copy()
     pelvis = rotations[:, :1]
     bent[:, legs.thigh] = quaternion.multiply(quaternion.conjugate(pelvis), limb.upper)
@@ -157,19 +158,14 @@ def _lock(
     return np.asarray(shown)
 
 
-def _remember(state: Characters, ankle: Vectors, hips: Vectors, dt: Floats) -> None:
-    """Note where ankles and hips are shown and how fast they move, for the next query."""
-    local = np.concatenate([ankle, hips[:, None]], axis=1)
+def _remember(state: Characters, local: Vectors, dt: Floats) -> None:
+    """Note where `SHOWN_JOINTS` are shown and how fast they move, for the next query."""
     world = _to_world(state, local)
     moved = (dt > 0.0)[:, None, None]
     rate = (world - state.shown_world) / np.maximum(dt, 1e-6)[:, None, None]
     rate = np.where((state.time <= dt)[:, None, None], 0.0, rate)
-    velocity = _turn_to_root(state, rate)
-    state.shown_ankle_velocity[...] = np.where(moved, velocity[:, :2], state.shown_ankle_velocity)
-    state.shown_hips_velocity[...] = np.where(
-        moved[:, 0], velocity[:, 2], state.shown_hips_velocity
-    )
-    state.shown_ankle[...] = ankle
+    state.shown_velocity[...] = np.where(moved, _turn_to_root(state, rate), state.shown_velocity)
+    state.shown_local[...] = local
     state.shown_world[...] = world
 
 

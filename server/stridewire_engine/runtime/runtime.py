@@ -105,8 +105,8 @@ class Runtime:
             NotFoundError: If the library is not open here.
             NotImplementedYetError: If a field of a later version is set.
         """
-        admission.check_open(message, self._limits)
         crowd = self._crowd(message.library)
+        admission.check_open(message, self._limits, crowd.matcher)
         settings = Settings(
             message.pacing,
             message.rate_hz,

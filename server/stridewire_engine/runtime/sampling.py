@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stridewire.motion import quaternion
-from stridewire.motion.array_types import Floats, Indices, Quaternions, Vectors
+from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire_engine.library import Library
 from stridewire_engine.stitchers import Motion
 
@@ -24,10 +24,17 @@ class Moments(NamedTuple):
         return self.rows + (self.weight >= 0.5)
 
 
+def wrap_times(library: Library, clip: Indices, time: Floats) -> Floats:
+    """Return times `(N,)` within loops, from 0 to their length; other clips' times as they are."""
+    length = (library.clip_frames[clip] - 1) / library.frame_rate
+    return np.where(library.loops[clip], np.mod(time, np.maximum(length, 1e-6)), time)
+
+
 def moments(library: Library, clip: Indices, time: Floats) -> Moments:
-    """Return where clips `(N,)` are at `time` `(N,)` seconds, clamped to the clips."""
+    """Return where clips `(N,)` are at `time` `(N,)`: loops begin anew, others stand still."""
     last = library.clip_frames[clip] - 1
-    at = np.clip(time * library.frame_rate, 0.0, last)
+    at = time * library.frame_rate
+    at = np.where(library.loops[clip], np.mod(at, np.maximum(last, 1)), np.clip(at, 0.0, last))
     frame = np.minimum(at.astype(np.int64), np.maximum(last - 1, 0))
     return Moments(library.clip_starts[clip] + frame, (at - frame).astype(np.float32))
 
@@ -65,9 +72,15 @@ def sample_motion(library: Library, at: Moments) -> Motion:
 
 
 def root_delta(library: Library, before: Moments, after: Moments) -> Floats:
-    """Return root motion `(N, 3)`: x, z in the root's frame before, yaw; float64."""
+    """Return root motion `(N, 3)`: x, z in the root's frame before, yaw; float64.
+
+    Where time went on to an earlier row of a loop, the way leads through its end.
+    """
     position, yaw = sample_root(library, before)
     position_after, yaw_after = sample_root(library, after)
+    again = after.rows + after.weight < before.rows + before.weight
+    if again.any():
+        position_after, yaw_after = _one_lap_on(library, after, again, position_after, yaw_after)
     way = position_after - position
     sine, cosine = np.sin(yaw), np.cos(yaw)
     return np.stack(
@@ -77,6 +90,22 @@ def root_delta(library: Library, before: Moments, after: Moments) -> Floats:
             yaw_after - yaw,
         ],
         axis=-1,
+    )
+
+
+def _one_lap_on(
+    library: Library, at: Moments, which: Flags, position: Vectors, yaw: Floats
+) -> tuple[Vectors, Floats]:
+    clip = library.clip_of[at.rows]
+    first = library.clip_starts[clip]
+    x, z, turn = np.moveaxis(library.laps[clip], -1, 0)
+    origin = library.root_position[first].astype(np.float64)
+    heading = library.root_yaw[first].astype(np.float64)
+    rest = quaternion.rotate(quaternion.from_yaw(turn), position - origin)
+    lap = quaternion.rotate(quaternion.from_yaw(heading), np.stack([x, 0.0 * x, z], axis=-1))
+    return (
+        np.where(which[:, None], origin + lap + rest, position),
+        np.where(which, yaw + turn, yaw),
     )
 
 

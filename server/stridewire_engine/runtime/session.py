@@ -22,7 +22,6 @@ from stridewire._messages import (
 from stridewire.motion.array_types import Floats, Indices
 from stridewire.motion.contacts import to_mask
 from stridewire_engine.runtime import admission, controls
-from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.events import TickEvents
 from stridewire_engine.runtime.roster import Roster
@@ -30,8 +29,8 @@ from stridewire_engine.runtime.settings import TickSettings
 from stridewire_engine.runtime.tick import Block
 
 _MAX_VIOLATIONS = 100
-_UPDATABLE = ("stitcher", "foot_lock")
-_UPDATABLE_LATER = ("filter", "weights", "responsiveness", "rate_divider")
+_UPDATABLE = ("stitcher", "foot_lock", "filter", "weights")
+_UPDATABLE_LATER = ("responsiveness", "rate_divider")
 
 
 class Session:
@@ -70,7 +69,7 @@ class Session:
         state = self.crowd.state
         for row, spec in zip(rows, specs, strict=True):
             controls.place(state, int(row), spec.root.position, spec.root.yaw)
-            _update(state, int(row), spec, _UPDATABLE)
+            self._set(int(row), spec, _UPDATABLE)
         # characters that search at different times share the work evenly among the ticks
         state.until_search[rows] = self._rng.random(len(specs)) * self._interval
         self._roster.add(np.array([spec.id for spec in specs]), rows)
@@ -87,9 +86,7 @@ class Session:
     def control(self, step: Step) -> StreamError | None:
         """Apply a step's controls without advancing; what is wrong is left out, held and told."""
         self._applied = step
-        return _error(
-            step.step, controls.apply_step(self._roster, self.crowd.state, step, self._limits)
-        )
+        return _error(step.step, controls.apply_step(self._roster, self.crowd, step, self._limits))
 
     def held_step(self, dt_s: float) -> Step:
         """Return a step that advances under the controls as they are, for a clock that paces."""
@@ -100,7 +97,7 @@ class Session:
         """Apply a step's controls and return how far to go, `(N,)` seconds, and what was wrong."""
         dt, wrong = self._check_dt(step.dt_s)
         self._applied = step
-        wrong += controls.apply_step(self._roster, self.crowd.state, step, self._limits)
+        wrong += controls.apply_step(self._roster, self.crowd, step, self._limits)
         self._time += dt
         return np.full(len(self), dt), _error(step.step, wrong)
 
@@ -108,8 +105,7 @@ class Session:
         """Make the frame out of the session's rows of the tick's block."""
         self._frame += 1
         detail = self.opened.settings.detail
-        ids = self._roster.ids
-        schema = self.crowd.matcher.schema
+        ids, crowd = self._roster.ids, self.crowd
         return Frame(
             frame=self._frame,
             applied_step=self._applied.step,
@@ -124,7 +120,7 @@ class Session:
             foot_targets=block.foot_targets[rows],
             flags=self._roster.take_flags(),
             simulated_root=block.simulated_root[rows] if detail is Detail.COSTS else None,
-            events=TickEvents(block, rows, ids, self._frame, detail, self.crowd.library, schema),
+            events=TickEvents(block, rows, ids, self._frame, detail, crowd.matcher, crowd.sets),
             timings_ms=block.timings_ms,
         )
 
@@ -159,7 +155,8 @@ class Session:
     def _add_one(self, path: str, spec: CharacterSpec) -> Iterator[Violation]:
         later = admission.later_fields(spec)
         wrong = [Violation(f"{path}.{name}", admission.NOT_YET) for name in later]
-        wrong += admission.check_spec(path, spec, self._roster.ids.tolist())
+        taken = self._roster.ids.tolist()
+        wrong += admission.check_spec(path, spec, taken, self.crowd.matcher)
         most = self._limits.max_characters
         if len(self) >= most:
             wrong.append(Violation(path, f"a session holds at most {most} characters"))
@@ -180,19 +177,32 @@ class Session:
                 wrong.append(Violation(f"{path}.spec.{name}", admission.NOT_YET))
             elif name not in _UPDATABLE:
                 wrong.append(Violation(f"{path}.mask", f"{name!r} cannot change; {allowed}"))
-        if "stitcher" in update.mask:
-            wrong += admission.check_stitcher(f"{path}.spec.stitcher", update.spec.stitcher)
+        wrong += self._check_values(f"{path}.spec", update)
         yield from wrong
         if not wrong:
-            _update(self.crowd.state, int(self.rows[at]), update.spec, update.mask)
+            self._set(int(self.rows[at]), update.spec, update.mask)
 
+    def _check_values(self, path: str, update: CharacterUpdate) -> Iterator[Violation]:
+        spec, matcher = update.spec, self.crowd.matcher
+        if "stitcher" in update.mask:
+            yield from admission.check_stitcher(f"{path}.stitcher", spec.stitcher)
+        if "filter" in update.mask:
+            yield from admission.check_filter(f"{path}.filter", spec.filter, matcher)
+        if "weights" in update.mask:
+            yield from admission.check_weights(f"{path}.weights", spec.weights, matcher.schema)
 
-def _update(state: Characters, row: int, spec: CharacterSpec, names: Iterable[str]) -> None:
-    if "stitcher" in names:
-        chosen = spec.stitcher or admission.STITCHER_NAMES[0]
-        state.stitcher[row] = admission.STITCHER_NAMES.index(chosen)
-    if "foot_lock" in names:
-        state.foot_lock[row] = spec.foot_lock
+    def _set(self, row: int, spec: CharacterSpec, names: Iterable[str]) -> None:
+        state = self.crowd.state
+        if "stitcher" in names:
+            chosen = spec.stitcher or admission.STITCHER_NAMES[0]
+            state.stitcher[row] = admission.STITCHER_NAMES.index(chosen)
+        if "foot_lock" in names:
+            state.foot_lock[row] = spec.foot_lock
+        if "filter" in names:
+            controls.set_filter(self.crowd, row, spec.filter)
+        if "weights" in names:
+            schema = self.crowd.matcher.schema
+            state.weights[row] = admission.merged_weights(spec.weights, schema)
 
 
 def _error(step: int, violations: Iterable[Violation]) -> StreamError | None:

@@ -23,6 +23,12 @@ class TickSettings:
     """A jump must be better than staying by so many of the library's typical costs."""
     least_improvement: float = 0.2
     """And by this share of the cost of staying."""
+    reselect_history: float = 0.5
+    """What was chosen within so many seconds is not chosen again."""
+    idle_speed: float = 0.1
+    """Slower than this, in m/s, and asked to stay so, a character does not search."""
+    idle_turn: float = 0.3
+    """Unless it is to turn by more than so many radians."""
     clip_end_margin: float = 0.1
     """A clip is left at the latest so many seconds before its end."""
     root_halflife: float = 0.12

@@ -14,7 +14,7 @@ from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, V
 from stridewire_engine.matching.search import Matcher
 from stridewire_engine.runtime import choice, feet, intent, root, sampling
 from stridewire_engine.runtime.characters import Characters
-from stridewire_engine.runtime.choice import Jumps
+from stridewire_engine.runtime.choice import Jumps, Sets
 from stridewire_engine.runtime.settings import TickSettings
 from stridewire_engine.stitchers import STITCHERS, StitchState
 
@@ -71,8 +71,14 @@ class Tick:
         self._legs = feet.Legs.of(matcher.library.skeleton)
         self._times = np.array(matcher.schema.trajectory_times)
 
-    def step(self, state: Characters, dt: Floats) -> Block:
-        """Advance all rows of `state` in place by `dt` `(N,)` seconds and return what is shown."""
+    def step(self, state: Characters, dt: Floats, sets: Sets) -> Block:
+        """Advance all rows of `state` in place by `dt` `(N,)` seconds and return what is shown.
+
+        Args:
+            state: N rows.
+            dt: `(N,)`.
+            sets: The candidate sets that rows name in `filter`.
+        """
         timings = _Timings(self._clock)
         settings, library = self._settings, self._matcher.library
         state.time += dt
@@ -82,7 +88,7 @@ class Tick:
         reason = choice.due(state, self._matcher, dt, settings)
         jumps = None
         if reason.any():
-            jumps = choice.choose(state, self._matcher, prediction, reason, settings)
+            jumps = choice.choose(state, self._matcher, sets, prediction, reason, settings)
         timings.note("search")
         intent.advance(state, goal, dt, settings)
         if jumps is not None and len(jumps.characters):
@@ -91,6 +97,7 @@ class Tick:
         state.clip_time += dt
         state.since_jump += dt
         after = sampling.moments(library, state.clip, state.clip_time)
+        state.clip_time[...] = sampling.wrap_times(library, state.clip, state.clip_time)
         hips, rotations = sampling.sample_pose(library, after)
         motion = sampling.root_delta(library, before, after)
         contacts = library.contacts[after.nearest]
@@ -98,6 +105,9 @@ class Tick:
         hips, rotations = _stitch(state, hips, rotations, dt)
         timings.note("stitch")
         delta = root.advance(state, motion, dt, settings)
+        state.root_speed[...] = np.where(
+            dt > 0.0, np.hypot(delta[:, 0], delta[:, 2]) / np.maximum(dt, 1e-6), state.root_speed
+        )
         timings.note("root")
         rotations = feet.plant(state, self._legs, hips, rotations, contacts, dt, settings)
         timings.note("feet")
@@ -124,6 +134,9 @@ class Tick:
         _clear_offsets(rows, jumps.reason == TransitionReason.START)
         rows.clip[...], rows.clip_time[...] = jumps.to_clip, jumps.to_time
         rows.since_jump[...] = 0.0
+        rows.recent[:, 1:], rows.recent[:, 0] = rows.recent[:, :-1].copy(), jumps.to_row
+        rows.recent_time[:, 1:] = rows.recent_time[:, :-1].copy()
+        rows.recent_time[:, 0] = rows.time
         state.put(jumps.characters, rows)
 
     def _block(

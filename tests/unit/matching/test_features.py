@@ -8,7 +8,8 @@ from stridewire.motion.clip import Clip, Pose
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.library import Library, LibraryError
 from stridewire_engine.matching.features import clip_features, normalisation, startable_frames
-from stridewire_engine.matching.schema import LOCOMOTION, Channel, ChannelKind, Schema
+from stridewire_engine.matching.presets import LOCOMOTION
+from stridewire_engine.matching.schema import Channel, ChannelKind, Schema, SchemaError
 
 EXACT = 1e-9
 
@@ -99,5 +100,5 @@ def test_a_schema_that_is_not_understood_is_refused() -> None:
     """An unknown kind of channel is an error of the library."""
     data = Schema("odd", (Channel("a", ChannelKind.POSITION, 1.0, ("Hips",)),)).to_data()
     data["channels"][0]["kind"] = "smell"
-    with pytest.raises(LibraryError, match="smell"):
+    with pytest.raises(SchemaError, match="smell"):
         Schema.from_data(data)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from stridewire_engine.library import Library
-from stridewire_engine.matching.index import ExactIndex
-from stridewire_engine.matching.schema import LOCOMOTION
+from stridewire_engine.matching.presets import LOCOMOTION
 from stridewire_engine.matching.search import NEIGHBOURHOOD_FRAMES, Matcher, typical_cost
 
 NONE = -np.ones((1, 1), np.int64)
@@ -109,6 +108,8 @@ def test_ties_go_to_the_lowest_row(small_library: Library) -> None:
             self.manifest = library.manifest
             self.features = np.tile(library.features[:200], (2, 1))
             self.startable = np.ones(400, np.bool_)
+            self.root_yaw = np.zeros(400)
+            self.grouping = None
             self.clip_of = np.repeat([0, 1], 200)
 
     matcher = Matcher(Twice(small_library))  # type: ignore[arg-type]
@@ -131,10 +132,11 @@ def test_results_do_not_depend_on_the_batch(
         assert alone.costs[0, 0] == together.costs[i, 0]
 
 
-def test_only_startable_rows_are_indexed(small_library: Library) -> None:
-    """The index holds the rows that may be chosen and no others."""
-    index = ExactIndex(LOCOMOTION, small_library.features, small_library.startable)
-    assert len(index) == small_library.startable.sum()
+def test_only_startable_rows_are_candidates(small_library: Library, matcher: Matcher) -> None:
+    """The rows that may be chosen are candidates and no others."""
+    everything = matcher.candidates.everything
+    assert np.array_equal(everything.rows, np.flatnonzero(small_library.startable))
+    assert everything.is_exact
 
 
 def test_typical_cost_is_the_median_of_the_nearest_other_moment(small_library: Library) -> None:

@@ -29,10 +29,12 @@ from stridewire._messages import (
 from stridewire.motion import quaternion
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.library import Library, LibraryError
+from stridewire_engine.matching.presets import LOCOMOTION
 from stridewire_engine.runtime import Runtime, Session
 
 Walk = Callable[..., Iterator[Frame]]
 NAN = float("nan")
+CHANNELS = [channel.name for channel in LOCOMOTION.channels]
 
 
 def one(runtime: Runtime, session: Session, step: Step) -> tuple[Frame, list[str]]:
@@ -68,6 +70,21 @@ def one(runtime: Runtime, session: Session, step: Step) -> tuple[Frame, list[str
         ({"max_frames_in_flight": 3601}, "open.max_frames_in_flight"),
         ({"max_frames_in_flight": -1}, "open.max_frames_in_flight"),
         ({"seed": -1}, "open.seed"),
+        ({"characters": [CharacterSpec(1, filter="wlk")]}, "open.characters[0].filter"),
+        ({"characters": [CharacterSpec(1, filter="walk & idle")]}, "open.characters[0].filter"),
+        ({"characters": [CharacterSpec(1, weights={"a": 1})]}, "open.characters[0].weights['a']"),
+        (
+            {"characters": [CharacterSpec(1, weights={"foot-position": NAN})]},
+            "open.characters[0].weights['foot-position']",
+        ),
+        (
+            {"characters": [CharacterSpec(1, weights={"foot-position": -0.1})]},
+            "open.characters[0].weights['foot-position']",
+        ),
+        (
+            {"characters": [CharacterSpec(1, weights=dict.fromkeys(CHANNELS, 0.0))]},
+            "open.characters[0].weights",
+        ),
     ],
 )
 def test_a_bad_open_is_refused_naming_the_field(
@@ -104,8 +121,6 @@ def test_limits_themselves_are_allowed(runtime: Runtime, changes: dict) -> None:
         ({"format": PoseFormat.F16}, "open.format"),
         ({"resume_token": "x"}, "open.resume_token"),
         ({"characters": [CharacterSpec(1, height_m=1.8)]}, "open.characters[0].height_m"),
-        ({"characters": [CharacterSpec(1, filter="walk")]}, "open.characters[0].filter"),
-        ({"characters": [CharacterSpec(1, weights={"a": 1})]}, "open.characters[0].weights"),
         (
             {"characters": [CharacterSpec(1, responsiveness=0.0)]},
             "open.characters[0].responsiveness",
@@ -226,8 +241,10 @@ def test_a_facing_turns_a_character_that_walks_elsewhere(runtime: Runtime) -> No
     ("sparse", "field"),
     [
         (Sparse(99), "step.sparse[0].character"),
-        (Sparse(10, filter="walk"), "step.sparse[0].filter"),
-        (Sparse(10, gait="walk"), "step.sparse[0].gait"),
+        (Sparse(10, filter="wlk"), "step.sparse[0].filter"),
+        (Sparse(10, filter="walk & idle"), "step.sparse[0].filter"),
+        (Sparse(10, gait="hop"), "step.sparse[0].gait"),
+        (Sparse(10, gait="walk", filter="walk"), "step.sparse[0].gait"),
         (Sparse(10, ground=Ground()), "step.sparse[0].ground"),
         (
             Sparse(10, root_correction=RootCorrection(GroundPose((NAN, 0, 0)))),
@@ -372,7 +389,8 @@ def test_a_new_character_does_not_disturb_the_others(small_library: Library) -> 
         (Edit(remove=[10, 11]), "edit.remove[1]"),
         (Edit(add=[CharacterSpec(10)]), "edit.add[0].id"),
         (Edit(add=[CharacterSpec(20), CharacterSpec(20)]), "edit.add[1].id"),
-        (Edit(add=[CharacterSpec(20, filter="walk")]), "edit.add[0].filter"),
+        (Edit(add=[CharacterSpec(20, filter="(walk")]), "edit.add[0].filter"),
+        (Edit(add=[CharacterSpec(20, rate_divider=2)]), "edit.add[0].rate_divider"),
         (
             Edit(update=[CharacterUpdate(CharacterSpec(99), ("stitcher",))]),
             "edit.update[0].spec.id",
@@ -380,8 +398,12 @@ def test_a_new_character_does_not_disturb_the_others(small_library: Library) -> 
         (Edit(update=[CharacterUpdate(CharacterSpec(10), ())]), "edit.update[0].mask"),
         (Edit(update=[CharacterUpdate(CharacterSpec(10), ("root",))]), "edit.update[0].mask"),
         (
-            Edit(update=[CharacterUpdate(CharacterSpec(10), ("weights",))]),
-            "edit.update[0].spec.weights",
+            Edit(update=[CharacterUpdate(CharacterSpec(10), ("responsiveness",))]),
+            "edit.update[0].spec.responsiveness",
+        ),
+        (
+            Edit(update=[CharacterUpdate(CharacterSpec(10, filter="!"), ("filter",))]),
+            "edit.update[0].spec.filter",
         ),
         (
             Edit(update=[CharacterUpdate(CharacterSpec(10, stitcher="glue"), ("stitcher",))]),

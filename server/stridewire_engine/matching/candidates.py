@@ -1,0 +1,134 @@
+"""Candidate sets: the rows that a search may choose under a filter, indexed on demand."""
+
+from collections import OrderedDict
+
+import faiss
+import numpy as np
+
+from stridewire._errors import InvalidRequestError, Violation
+from stridewire.motion.array_types import Flags, Floats, Indices
+from stridewire_engine.library import Library
+from stridewire_engine.matching import tag_expressions
+from stridewire_engine.matching.index import ExactIndex
+from stridewire_engine.matching.inverted_lists import Grouping, InvertedLists
+from stridewire_engine.matching.schema import Schema
+
+EXACT_ROWS = 20_000
+"""Sets up to this size are scanned row by row; larger ones look into inverted lists."""
+_CACHED_SETS = 64
+
+
+class CandidateSet:
+    """Rows that satisfy one filter."""
+
+    def __init__(
+        self,
+        text: str,
+        satisfied: Flags,
+        rows: Indices,
+        index: ExactIndex | InvertedLists,
+        selector: "faiss.IDSelector | None",
+    ) -> None:
+        self.text = text
+        """The filter's expression; empty for all rows."""
+        self.satisfied = satisfied
+        """`(F,)`: rows for which the filter holds, startable or not."""
+        self.rows = rows
+        """Rows that may be chosen, ascending."""
+        self._index = index
+        self._selector = selector
+
+    def __len__(self) -> int:
+        """Return the number of rows that may be chosen."""
+        return len(self.rows)
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether every row is looked at."""
+        return isinstance(self._index, ExactIndex)
+
+    def nearest(self, augmented: Floats, k: int, *, exhaustive: bool = False) -> Indices:
+        """Return `(N, min(k, rows))` rows nearest to augmented queries; -1 where none were found.
+
+        Args:
+            augmented: From `augment_queries`.
+            k: Number of rows.
+            exhaustive: Look into every list.
+        """
+        if isinstance(self._index, ExactIndex):
+            return self._index.search(augmented, k)
+        return self._index.search(augmented, min(k, len(self)), self._selector, exhaustive)
+
+
+class Candidates:
+    """All candidate sets of one library."""
+
+    def __init__(self, library: Library, schema: Schema, bias: Floats) -> None:
+        """Index the rows that may be chosen.
+
+        Args:
+            library: With its grouping into lists, where it has one.
+            schema: Of its features.
+            bias: `(F,)` cost that each row carries.
+        """
+        self._library = library
+        self._schema = schema
+        self._bias = bias
+        self._cache: OrderedDict[str, CandidateSet] = OrderedDict()
+        rows = np.flatnonzero(library.startable)
+        self.lists: InvertedLists | None = None
+        """The index of large sets; None where every set is scanned."""
+        lists = library.grouping
+        if lists is not None and len(rows) > EXACT_ROWS:
+            grouping = Grouping(lists.centroids, lists.lists)
+            self.lists = InvertedLists(schema, library.features, bias, rows, grouping, lists.probes)
+        everything = np.ones(len(library.features), np.bool_)
+        self.everything = self._make("", everything, rows)
+
+    def get(self, text: str, path: str) -> CandidateSet:
+        """Return the set of a filter; the most recent ones are kept.
+
+        Args:
+            text: A tag expression; empty means all rows.
+            path: Field path for errors.
+
+        Raises:
+            InvalidRequestError: If the expression is malformed or no row satisfies it.
+        """
+        text = text.strip()
+        if not text:
+            return self.everything
+        if text not in self._cache:
+            library = self._library
+            expression = tag_expressions.parse(text, path, library.tag_names)
+            satisfied = tag_expressions.evaluate(expression, library.tag_bits, library.tag_names)
+            rows = np.flatnonzero(satisfied & library.startable)
+            if not len(rows):
+                raise InvalidRequestError.of(Violation(path, _nothing(library, text, satisfied)))
+            self._cache[text] = self._make(text, satisfied, rows)
+            if len(self._cache) > _CACHED_SETS:
+                self._cache.popitem(last=False)
+        self._cache.move_to_end(text)
+        return self._cache[text]
+
+    def _make(self, text: str, satisfied: Flags, rows: Indices) -> CandidateSet:
+        if self.lists is None or len(rows) <= EXACT_ROWS:
+            features = self._library.features
+            exact = ExactIndex(self._schema, features, self._bias, rows)
+            return CandidateSet(text, satisfied, rows, exact, None)
+        selector = None
+        if text:
+            allowed = np.zeros(len(satisfied), np.bool_)
+            allowed[rows] = True
+            # FAISS keeps a pointer to the bitmap; its Python wrapper keeps the array alive
+            selector = faiss.IDSelectorBitmap(np.packbits(allowed, bitorder="little"))
+        return CandidateSet(text, satisfied, rows, self.lists, selector)
+
+
+def _nothing(library: Library, text: str, satisfied: Flags) -> str:
+    if satisfied.any():
+        return (
+            f"{text!r} holds only within the last second of clips, where no search may start; "
+            "loosen it"
+        )
+    return f"nothing in library {library.name!r} satisfies {text!r}; loosen it"
