@@ -137,7 +137,7 @@ def _on_the_spot() -> Iterator[tuple[str, _Script]]:
         )
         yield (
             f"sidestep-{side}",
-            [Segment(1.0), Segment(4.0, side=0.4 * sign), Segment(1.5)],
+            [Segment(1.0), Segment(5.0, side=0.6 * sign), Segment(1.5)],
         )
 
 

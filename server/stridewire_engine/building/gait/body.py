@@ -33,7 +33,7 @@ _LIFT = _SIDE_TO_SIDE + 1
 _FORE_AND_AFT = _SIDE_TO_SIDE + 2
 _FULL_SPEED = 0.55
 _LEAST_GAIT = 0.35
-_MOMENT_S = {"walk": 0.08, "run": 0.13}
+_MOMENT_S = {"walk": 0.11, "run": 0.09}
 _LARGEST_DEVIATION = 1.3
 # what the training data holds, m/s^2
 _SIDEWAYS = {"walk": 1.5, "run": 3.5}
@@ -41,7 +41,7 @@ _ACCELERATION = {"walk": (-1.2, 1.05), "run": (-1.6, 2.5)}
 _TALLER = 0.02
 # seconds between goals of what drifts while standing
 _DRIFT_S = {"weight": 1.7, "lean": 0.9, "trunk": 1.3, "nod": 0.8, "look": 1.2, "sway": 0.3}
-_WIDER = 0.06
+_WIDER = 0.08
 _CLEARANCE, _TURN_CLEARANCE, _MIDDLE_S = 0.035, 0.015, 0.4
 
 

@@ -21,7 +21,8 @@ _MOVING_SPEED, _MOVING_TURN = 0.08, 0.15
 _BLEND_S = 0.1
 _PLANTED_AT = (0.09, 0.11)
 _RUN_STANCE = 0.2
-_SIDE_CADENCE, _MOST_SIDE_CADENCE = 1.3, 0.45
+_SIDE_CADENCE, _MOST_SIDE_CADENCE = 1.3, 0.65
+_SPOT_CADENCE, _SPOT_SPEED = 0.2, 0.5
 
 
 @dataclass(frozen=True)
@@ -59,9 +60,11 @@ class Cycle:
 
 
 def cadence(model: GaitModel, travel: Travel, run: Floats) -> Floats:
-    """Return cycles a second `(T,)`: the model's; short quick steps sideways."""
+    """Return cycles a second `(T,)`: the model's; quick steps sideways and on the spot."""
     walk, running = (gait.cadence_at(travel.speed, travel.turn) for gait in (model.walk, model.run))
     walk = walk + np.minimum(_SIDE_CADENCE * np.abs(travel.velocity[:, 0]), _MOST_SIDE_CADENCE)
+    on_the_spot = np.clip(1.0 - travel.speed / _SPOT_SPEED, 0.0, 1.0)
+    walk = walk + _SPOT_CADENCE * np.abs(travel.turn) * on_the_spot
     return np.asarray(walk + run * (running - walk))
 
 

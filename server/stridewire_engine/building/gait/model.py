@@ -29,7 +29,7 @@ CHANNELS = 3 * JOINTS + 3 * len(ENDS)
 HARMONICS = 4
 PERSON_HARMONICS = 2
 GAITS = ("walk", "run")
-_SHARPEST = 1.5
+_SHARPEST = 1.0
 
 
 class GaitModelError(ValueError):
