@@ -61,6 +61,7 @@ _CHANNEL_OPTIONS = [
     ("grpc.http2.lookahead_bytes", 16_384),
     ("grpc.keepalive_time_ms", 30_000),
     ("grpc.keepalive_timeout_ms", 10_000),
+    ("grpc.http2.ping_timeout_ms", 10_000),
     ("grpc.max_receive_message_length", 8 << 20),
 ]
 _WAITING_REQUESTS = 64

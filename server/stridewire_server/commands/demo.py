@@ -53,7 +53,7 @@ def demo(
 ) -> None:
     """Start a server, drive characters over gRPC at wall-clock 60 frames/s, show what came."""
     if not as_json:
-        click.echo("starting a server (the first start builds its library) …", err=True)
+        click.echo("starting a server …", err=True)
     with (
         _server(library) as address,
         Client(address) as client,

@@ -49,6 +49,7 @@ def _open(given: tuple[str, ...]) -> "list[Library]":
     from stridewire_engine.library import Library
 
     if not given:
+        click.echo("opening the embedded library; the first start builds it …", err=True)
         return [embedded_library()]
     libraries = []
     for text in given:
