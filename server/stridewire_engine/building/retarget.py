@@ -19,6 +19,7 @@ from stridewire_engine.building.rest_pose import joint_axes
 from stridewire_engine.building.retarget_feet import level_soles, plant, standing, toe_path
 
 _SAME = 1e-3
+_SHORTEST_BONE = 0.02
 _ALONG = np.cos(np.deg2rad(35.0))
 _TRUNK = ("Hips", "Spine", "Spine1", "Spine2", "Neck", "Head")
 _INSTEAD = {
@@ -87,9 +88,12 @@ def check_human(source: SourceMotion, figure: Figure) -> None:
     """Refuse four-legged and other figures whose limbs have no human's proportions.
 
     Raises:
-        NotHumanError: If arms or trunk are too short or too long for the legs.
+        NotHumanError: If a limb has no length, or arms or trunk do not go with the legs.
     """
     leg = figure.length("UpLeg", "Leg", "Foot")
+    for part, end in NEXT.items():
+        if not np.linalg.norm(figure.bone(part, end)) > _SHORTEST_BONE * leg:
+            raise NotHumanError(f"{source.path}: no human: from {part} to {end} there is no length")
     arm = figure.length("Arm", "ForeArm", "Hand")
     trunk = figure.length("UpLeg", "Arm")
     for what, ratio, low, high in (

@@ -3,6 +3,7 @@
 import click
 
 from stridewire_engine.commands.library_build import build
+from stridewire_engine.commands.library_fetch import fetch_capture
 from stridewire_engine.commands.library_info import info
 from stridewire_engine.commands.library_profile import profile
 from stridewire_engine.commands.library_report import report
@@ -13,5 +14,5 @@ def library() -> None:
     """Build libraries from motion capture and look into them."""
 
 
-for command in (build, info, report, profile):
+for command in (build, info, report, profile, fetch_capture):
     library.add_command(command)
