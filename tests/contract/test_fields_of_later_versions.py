@@ -27,20 +27,14 @@ OPEN = {
 }
 SPEC = {
     "height_m": {"height_m": 1.8},
-    "filter": {"filter": "walk"},
-    "weights": {"weights": {"trajectory-position": 2.0}},
     "responsiveness": {"responsiveness": 0.0},
     "rate_divider": {"rate_divider": 2},
 }
 SPARSE = {
-    "filter": {"filter": "run"},
-    "gait": {"gait": "run"},
     "ground": {"ground": pb.Ground(height=0.1)},
 }
 SEARCH = {
     "pose.inline": {"pose": pose_pb2.PoseSource(inline=pose_pb2.Poses(frames=1))},
-    "filter": {"filter": "walk"},
-    "weights": {"weights": {"trajectory-position": 2.0}},
 }
 
 
@@ -114,6 +108,8 @@ def test_all_other_fields_work(raw_stream: Call) -> None:
         root=pose_pb2.GroundPose(position=pose_pb2.Vector3(x=1.0), yaw=0.5),
         stitcher="none",
         foot_lock=False,
+        filter="walk | idle",
+        weights={"trajectory-position": 2.0},
     )
     opened = pb.Open(
         library="small",
@@ -132,12 +128,15 @@ def test_all_other_fields_work(raw_stream: Call) -> None:
         trajectory=trajectory,
         root_correction=pb.RootCorrection(root=spec.root),
         force_search=True,
+        filter="walk",
     )
-    later = {*(name.partition(".")[2] for name in OPEN), *SPEC, *SPARSE}
+    # sugar for a filter, so that it comes in a control of its own
+    gait = pb.Sparse(character=7, gait="walk")
+    later = {"gait", *(name.partition(".")[2] for name in OPEN), *SPEC, *SPARSE}
     for message in (opened, spec, sparse):
         present = {field.name for field, _ in message.ListFields()}
         assert present == {f.name for f in message.DESCRIPTOR.fields} - later
-    responses = raw_stream(pb.AnimateRequest(open=opened), stepping(step=1, sparse=[sparse]))
+    responses = raw_stream(pb.AnimateRequest(open=opened), stepping(step=1, sparse=[sparse, gait]))
     assert [response.WhichOneof("message") for response in responses] == ["opened", "frame"]
     assert len(responses[1].frame.simulated_root) == 4
 

@@ -23,6 +23,7 @@ from stridewire._messages import (
     Detail,
     Edit,
     Event,
+    ExcludedMatch,
     Frame,
     Ground,
     GroundPose,
@@ -174,6 +175,8 @@ opened = st.builds(
     models=st.dictionaries(text, text, max_size=2),
     resume_token=text,
 )
+matches = st.builds(Match, text, double, st.lists(text).map(tuple), single, weights, single)
+excluded = st.lists(st.builds(ExcludedMatch, matches, text), max_size=2).map(tuple)
 transitions = st.builds(
     Transition,
     character=uint,
@@ -186,6 +189,9 @@ transitions = st.builds(
     cost=single,
     stay_cost=single,
     channels=weights,
+    bias=single,
+    runners_up=st.lists(matches, max_size=2).map(tuple),
+    excluded=excluded,
 )
 events: st.SearchStrategy[Event] = st.one_of(
     transitions,
@@ -238,11 +244,11 @@ searches = st.builds(
 )
 results = st.builds(
     SearchResult,
-    st.lists(
-        st.builds(Match, text, double, st.lists(text).map(tuple), single, weights), max_size=2
-    ).map(tuple),
+    st.lists(matches, max_size=2).map(tuple),
     text,
     text,
+    excluded,
+    st.booleans(),
 )
 infos = st.builds(
     ServerInfo,

@@ -2,6 +2,12 @@
 
 from typing import assert_never
 
+from stridewire._codec.matches import (
+    decode_excluded,
+    decode_match,
+    encode_excluded,
+    encode_match,
+)
 from stridewire._codec.shared import decode_channels, encode_channels
 from stridewire._errors import ServerError
 from stridewire._messages import (
@@ -63,6 +69,9 @@ def _encode_transition(event: Transition) -> pb.Transition:
         stay_cost=event.stay_cost,
         channels=encode_channels(event.channels),
         reason=f"TRANSITION_REASON_{event.reason.name}",
+        bias=event.bias,
+        runners_up=map(encode_match, event.runners_up),
+        excluded=map(encode_excluded, event.excluded),
     )
     if event.from_clip:
         # `from` is a keyword of Python, so that the generated attribute can only be named so.
@@ -86,4 +95,7 @@ def _decode_transition(wire: pb.Event) -> Transition:
         cost=transition.cost,
         stay_cost=transition.stay_cost,
         channels=decode_channels(transition.channels),
+        bias=transition.bias,
+        runners_up=tuple(map(decode_match, transition.runners_up)),
+        excluded=tuple(map(decode_excluded, transition.excluded)),
     )

@@ -1,11 +1,15 @@
 """Unary queries: search of the motion database, what the server is."""
 
+from stridewire._codec.matches import (
+    decode_excluded,
+    decode_match,
+    encode_excluded,
+    encode_match,
+)
 from stridewire._codec.shared import (
-    decode_channels,
     decode_library_info,
     decode_limits,
     decode_trajectory,
-    encode_channels,
     encode_library_info,
     encode_limits,
     encode_trajectory,
@@ -14,7 +18,6 @@ from stridewire._errors import InvalidRequestError, NotImplementedYetError, Viol
 from stridewire._messages import (
     ClipTime,
     DesiredMotion,
-    Match,
     SearchQuery,
     SearchResult,
     ServerInfo,
@@ -70,28 +73,23 @@ def decode_search(wire: match_pb2.SearchRequest) -> SearchQuery:
 def encode_search_result(result: SearchResult) -> match_pb2.SearchResponse:
     """Encode the matches."""
     return match_pb2.SearchResponse(
-        matches=(
-            match_pb2.Match(
-                clip=match.clip,
-                time_s=match.time_s,
-                tags=match.tags,
-                cost=match.cost,
-                channels=encode_channels(match.channels),
-            )
-            for match in result.matches
-        ),
+        matches=map(encode_match, result.matches),
         library=result.library,
         content_hash=result.content_hash,
+        excluded=map(encode_excluded, result.excluded),
+        exact=result.exact,
     )
 
 
 def decode_search_result(wire: match_pb2.SearchResponse) -> SearchResult:
     """Decode the matches."""
-    matches = tuple(
-        Match(m.clip, m.time_s, tuple(m.tags), m.cost, decode_channels(m.channels))
-        for m in wire.matches
+    return SearchResult(
+        tuple(map(decode_match, wire.matches)),
+        wire.library,
+        wire.content_hash,
+        tuple(map(decode_excluded, wire.excluded)),
+        wire.exact,
     )
-    return SearchResult(matches, wire.library, wire.content_hash)
 
 
 def encode_server_info(info: ServerInfo) -> library_pb2.GetInfoResponse:

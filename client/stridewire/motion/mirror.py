@@ -9,7 +9,6 @@ from stridewire.motion.array_types import Quaternions, Vectors
 from stridewire.motion.clip import Clip, Pose
 from stridewire.motion.skeleton import Skeleton
 
-
 MIRRORED = "-mirrored"
 """What the name of a mirrored copy ends in."""
 

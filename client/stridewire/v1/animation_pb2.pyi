@@ -1,4 +1,5 @@
 from google.protobuf import field_mask_pb2 as _field_mask_pb2
+from stridewire.v1 import match_pb2 as _match_pb2
 from stridewire.v1 import pose_pb2 as _pose_pb2
 from google.protobuf.internal import containers as _containers
 from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
@@ -50,6 +51,7 @@ class TransitionReason(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     TRANSITION_REASON_CLIP_END: _ClassVar[TransitionReason]
     TRANSITION_REASON_FORCED: _ClassVar[TransitionReason]
     TRANSITION_REASON_START: _ClassVar[TransitionReason]
+    TRANSITION_REASON_FILTER_CHANGE: _ClassVar[TransitionReason]
 
 class NoticeKind(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
@@ -82,6 +84,7 @@ TRANSITION_REASON_CONTROL_CHANGE: TransitionReason
 TRANSITION_REASON_CLIP_END: TransitionReason
 TRANSITION_REASON_FORCED: TransitionReason
 TRANSITION_REASON_START: TransitionReason
+TRANSITION_REASON_FILTER_CHANGE: TransitionReason
 NOTICE_KIND_UNSPECIFIED: NoticeKind
 NOTICE_KIND_DRAINING: NoticeKind
 NOTICE_KIND_DEGRADED: NoticeKind
@@ -388,19 +391,25 @@ class Event(_message.Message):
     def __init__(self, character: _Optional[int] = ..., frame: _Optional[int] = ..., transition: _Optional[_Union[Transition, _Mapping]] = ..., contact: _Optional[_Union[ContactChange, _Mapping]] = ..., clip_end: _Optional[_Union[ClipEnd, _Mapping]] = ..., tag_entered: _Optional[_Union[TagEntered, _Mapping]] = ...) -> None: ...
 
 class Transition(_message.Message):
-    __slots__ = ("to", "cost", "stay_cost", "channels", "reason")
+    __slots__ = ("to", "cost", "stay_cost", "channels", "reason", "bias", "runners_up", "excluded")
     FROM_FIELD_NUMBER: _ClassVar[int]
     TO_FIELD_NUMBER: _ClassVar[int]
     COST_FIELD_NUMBER: _ClassVar[int]
     STAY_COST_FIELD_NUMBER: _ClassVar[int]
     CHANNELS_FIELD_NUMBER: _ClassVar[int]
     REASON_FIELD_NUMBER: _ClassVar[int]
+    BIAS_FIELD_NUMBER: _ClassVar[int]
+    RUNNERS_UP_FIELD_NUMBER: _ClassVar[int]
+    EXCLUDED_FIELD_NUMBER: _ClassVar[int]
     to: _pose_pb2.ClipTime
     cost: float
     stay_cost: float
     channels: _containers.RepeatedCompositeFieldContainer[_pose_pb2.ChannelCost]
     reason: TransitionReason
-    def __init__(self, to: _Optional[_Union[_pose_pb2.ClipTime, _Mapping]] = ..., cost: _Optional[float] = ..., stay_cost: _Optional[float] = ..., channels: _Optional[_Iterable[_Union[_pose_pb2.ChannelCost, _Mapping]]] = ..., reason: _Optional[_Union[TransitionReason, str]] = ..., **kwargs) -> None: ...
+    bias: float
+    runners_up: _containers.RepeatedCompositeFieldContainer[_match_pb2.Match]
+    excluded: _containers.RepeatedCompositeFieldContainer[_match_pb2.ExcludedMatch]
+    def __init__(self, to: _Optional[_Union[_pose_pb2.ClipTime, _Mapping]] = ..., cost: _Optional[float] = ..., stay_cost: _Optional[float] = ..., channels: _Optional[_Iterable[_Union[_pose_pb2.ChannelCost, _Mapping]]] = ..., reason: _Optional[_Union[TransitionReason, str]] = ..., bias: _Optional[float] = ..., runners_up: _Optional[_Iterable[_Union[_match_pb2.Match, _Mapping]]] = ..., excluded: _Optional[_Iterable[_Union[_match_pb2.ExcludedMatch, _Mapping]]] = ..., **kwargs) -> None: ...
 
 class ContactChange(_message.Message):
     __slots__ = ("joint", "planted")

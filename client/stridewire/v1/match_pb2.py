@@ -15,7 +15,7 @@ _sym_db = _symbol_database.Default()
 from stridewire.v1 import pose_pb2 as stridewire_dot_v1_dot_pose__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x19stridewire/v1/match.proto\x12\rstridewire.v1\x1a\x18stridewire/v1/pose.proto\"\xe5\x02\n\rSearchRequest\x12\x0f\n\x07library\x18\x01 \x01(\t\x12\'\n\x04pose\x18\x02 \x01(\x0b\x32\x19.stridewire.v1.PoseSource\x12/\n\ntrajectory\x18\x03 \x01(\x0b\x32\x19.stridewire.v1.TrajectoryH\x00\x12.\n\x06motion\x18\x04 \x01(\x0b\x32\x1c.stridewire.v1.DesiredMotionH\x00\x12\x0e\n\x06\x66ilter\x18\x05 \x01(\t\x12:\n\x07weights\x18\x06 \x03(\x0b\x32).stridewire.v1.SearchRequest.WeightsEntry\x12\t\n\x01k\x18\x07 \x01(\r\x12(\n\x07\x65xclude\x18\x08 \x03(\x0b\x32\x17.stridewire.v1.ClipTime\x1a.\n\x0cWeightsEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\x02:\x02\x38\x01\x42\x08\n\x06intent\"_\n\rDesiredMotion\x12\x12\n\nvelocity_x\x18\x01 \x01(\x02\x12\x12\n\nvelocity_z\x18\x02 \x01(\x02\x12\x17\n\nfacing_yaw\x18\x03 \x01(\x02H\x00\x88\x01\x01\x42\r\n\x0b_facing_yaw\"^\n\x0eSearchResponse\x12%\n\x07matches\x18\x01 \x03(\x0b\x32\x14.stridewire.v1.Match\x12\x0f\n\x07library\x18\x02 \x01(\t\x12\x14\n\x0c\x63ontent_hash\x18\x03 \x01(\t\"o\n\x05Match\x12\x0c\n\x04\x63lip\x18\x01 \x01(\t\x12\x0e\n\x06time_s\x18\x02 \x01(\x01\x12\x0c\n\x04tags\x18\x03 \x03(\t\x12\x0c\n\x04\x63ost\x18\x04 \x01(\x02\x12,\n\x08\x63hannels\x18\x05 \x03(\x0b\x32\x1a.stridewire.v1.ChannelCost2U\n\x0cMatchService\x12\x45\n\x06Search\x12\x1c.stridewire.v1.SearchRequest\x1a\x1d.stridewire.v1.SearchResponseb\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x19stridewire/v1/match.proto\x12\rstridewire.v1\x1a\x18stridewire/v1/pose.proto\"\xe5\x02\n\rSearchRequest\x12\x0f\n\x07library\x18\x01 \x01(\t\x12\'\n\x04pose\x18\x02 \x01(\x0b\x32\x19.stridewire.v1.PoseSource\x12/\n\ntrajectory\x18\x03 \x01(\x0b\x32\x19.stridewire.v1.TrajectoryH\x00\x12.\n\x06motion\x18\x04 \x01(\x0b\x32\x1c.stridewire.v1.DesiredMotionH\x00\x12\x0e\n\x06\x66ilter\x18\x05 \x01(\t\x12:\n\x07weights\x18\x06 \x03(\x0b\x32).stridewire.v1.SearchRequest.WeightsEntry\x12\t\n\x01k\x18\x07 \x01(\r\x12(\n\x07\x65xclude\x18\x08 \x03(\x0b\x32\x17.stridewire.v1.ClipTime\x1a.\n\x0cWeightsEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\x02:\x02\x38\x01\x42\x08\n\x06intent\"_\n\rDesiredMotion\x12\x12\n\nvelocity_x\x18\x01 \x01(\x02\x12\x12\n\nvelocity_z\x18\x02 \x01(\x02\x12\x17\n\nfacing_yaw\x18\x03 \x01(\x02H\x00\x88\x01\x01\x42\r\n\x0b_facing_yaw\"\x9d\x01\n\x0eSearchResponse\x12%\n\x07matches\x18\x01 \x03(\x0b\x32\x14.stridewire.v1.Match\x12\x0f\n\x07library\x18\x02 \x01(\t\x12\x14\n\x0c\x63ontent_hash\x18\x03 \x01(\t\x12.\n\x08\x65xcluded\x18\x04 \x03(\x0b\x32\x1c.stridewire.v1.ExcludedMatch\x12\r\n\x05\x65xact\x18\x05 \x01(\x08\"}\n\x05Match\x12\x0c\n\x04\x63lip\x18\x01 \x01(\t\x12\x0e\n\x06time_s\x18\x02 \x01(\x01\x12\x0c\n\x04tags\x18\x03 \x03(\t\x12\x0c\n\x04\x63ost\x18\x04 \x01(\x02\x12,\n\x08\x63hannels\x18\x05 \x03(\x0b\x32\x1a.stridewire.v1.ChannelCost\x12\x0c\n\x04\x62ias\x18\x06 \x01(\x02\"D\n\rExcludedMatch\x12#\n\x05match\x18\x01 \x01(\x0b\x32\x14.stridewire.v1.Match\x12\x0e\n\x06reason\x18\x02 \x01(\t2U\n\x0cMatchService\x12\x45\n\x06Search\x12\x1c.stridewire.v1.SearchRequest\x1a\x1d.stridewire.v1.SearchResponseb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -30,10 +30,12 @@ if _descriptor._USE_C_DESCRIPTORS == False:
   _globals['_SEARCHREQUEST_WEIGHTSENTRY']._serialized_end=418
   _globals['_DESIREDMOTION']._serialized_start=430
   _globals['_DESIREDMOTION']._serialized_end=525
-  _globals['_SEARCHRESPONSE']._serialized_start=527
-  _globals['_SEARCHRESPONSE']._serialized_end=621
-  _globals['_MATCH']._serialized_start=623
-  _globals['_MATCH']._serialized_end=734
-  _globals['_MATCHSERVICE']._serialized_start=736
-  _globals['_MATCHSERVICE']._serialized_end=821
+  _globals['_SEARCHRESPONSE']._serialized_start=528
+  _globals['_SEARCHRESPONSE']._serialized_end=685
+  _globals['_MATCH']._serialized_start=687
+  _globals['_MATCH']._serialized_end=812
+  _globals['_EXCLUDEDMATCH']._serialized_start=814
+  _globals['_EXCLUDEDMATCH']._serialized_end=882
+  _globals['_MATCHSERVICE']._serialized_start=884
+  _globals['_MATCHSERVICE']._serialized_end=969
 # @@protoc_insertion_point(module_scope)

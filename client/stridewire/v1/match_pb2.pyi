@@ -44,25 +44,39 @@ class DesiredMotion(_message.Message):
     def __init__(self, velocity_x: _Optional[float] = ..., velocity_z: _Optional[float] = ..., facing_yaw: _Optional[float] = ...) -> None: ...
 
 class SearchResponse(_message.Message):
-    __slots__ = ("matches", "library", "content_hash")
+    __slots__ = ("matches", "library", "content_hash", "excluded", "exact")
     MATCHES_FIELD_NUMBER: _ClassVar[int]
     LIBRARY_FIELD_NUMBER: _ClassVar[int]
     CONTENT_HASH_FIELD_NUMBER: _ClassVar[int]
+    EXCLUDED_FIELD_NUMBER: _ClassVar[int]
+    EXACT_FIELD_NUMBER: _ClassVar[int]
     matches: _containers.RepeatedCompositeFieldContainer[Match]
     library: str
     content_hash: str
-    def __init__(self, matches: _Optional[_Iterable[_Union[Match, _Mapping]]] = ..., library: _Optional[str] = ..., content_hash: _Optional[str] = ...) -> None: ...
+    excluded: _containers.RepeatedCompositeFieldContainer[ExcludedMatch]
+    exact: bool
+    def __init__(self, matches: _Optional[_Iterable[_Union[Match, _Mapping]]] = ..., library: _Optional[str] = ..., content_hash: _Optional[str] = ..., excluded: _Optional[_Iterable[_Union[ExcludedMatch, _Mapping]]] = ..., exact: bool = ...) -> None: ...
 
 class Match(_message.Message):
-    __slots__ = ("clip", "time_s", "tags", "cost", "channels")
+    __slots__ = ("clip", "time_s", "tags", "cost", "channels", "bias")
     CLIP_FIELD_NUMBER: _ClassVar[int]
     TIME_S_FIELD_NUMBER: _ClassVar[int]
     TAGS_FIELD_NUMBER: _ClassVar[int]
     COST_FIELD_NUMBER: _ClassVar[int]
     CHANNELS_FIELD_NUMBER: _ClassVar[int]
+    BIAS_FIELD_NUMBER: _ClassVar[int]
     clip: str
     time_s: float
     tags: _containers.RepeatedScalarFieldContainer[str]
     cost: float
     channels: _containers.RepeatedCompositeFieldContainer[_pose_pb2.ChannelCost]
-    def __init__(self, clip: _Optional[str] = ..., time_s: _Optional[float] = ..., tags: _Optional[_Iterable[str]] = ..., cost: _Optional[float] = ..., channels: _Optional[_Iterable[_Union[_pose_pb2.ChannelCost, _Mapping]]] = ...) -> None: ...
+    bias: float
+    def __init__(self, clip: _Optional[str] = ..., time_s: _Optional[float] = ..., tags: _Optional[_Iterable[str]] = ..., cost: _Optional[float] = ..., channels: _Optional[_Iterable[_Union[_pose_pb2.ChannelCost, _Mapping]]] = ..., bias: _Optional[float] = ...) -> None: ...
+
+class ExcludedMatch(_message.Message):
+    __slots__ = ("match", "reason")
+    MATCH_FIELD_NUMBER: _ClassVar[int]
+    REASON_FIELD_NUMBER: _ClassVar[int]
+    match: Match
+    reason: str
+    def __init__(self, match: _Optional[_Union[Match, _Mapping]] = ..., reason: _Optional[str] = ...) -> None: ...

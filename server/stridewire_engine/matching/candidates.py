@@ -10,11 +10,13 @@ from stridewire.motion.array_types import Flags, Floats, Indices
 from stridewire_engine.library import Library
 from stridewire_engine.matching import tag_expressions
 from stridewire_engine.matching.index import ExactIndex
-from stridewire_engine.matching.inverted_lists import Grouping, InvertedLists
+from stridewire_engine.matching.inverted_lists import Grouping, InvertedLists, narrow
 from stridewire_engine.matching.schema import Schema
 
 EXACT_ROWS = 20_000
 """Sets up to this size are scanned row by row; larger ones look into inverted lists."""
+_OWN_LISTS_SHARE = 0.5
+"""Larger sets below this share of all rows get lists of their own."""
 _CACHED_SETS = 64
 
 
@@ -46,6 +48,11 @@ class CandidateSet:
     def is_exact(self) -> bool:
         """Whether every row is looked at."""
         return isinstance(self._index, ExactIndex)
+
+    def look_into(self, probes: int) -> None:
+        """Set into how many lists a search looks, where there are lists."""
+        if isinstance(self._index, InvertedLists):
+            self._index.probes = probes
 
     def nearest(self, augmented: Floats, k: int, *, exhaustive: bool = False) -> Indices:
         """Return `(N, min(k, rows))` rows nearest to augmented queries; -1 where none were found.
@@ -83,7 +90,8 @@ class Candidates:
             grouping = Grouping(lists.centroids, lists.lists)
             self.lists = InvertedLists(schema, library.features, bias, rows, grouping, lists.probes)
         everything = np.ones(len(library.features), np.bool_)
-        self.everything = self._make("", everything, rows)
+        index = self.lists or ExactIndex(schema, library.features, bias, rows)
+        self.everything = CandidateSet("", everything, rows, index, None)
 
     def get(self, text: str, path: str) -> CandidateSet:
         """Return the set of a filter; the most recent ones are kept.
@@ -111,18 +119,33 @@ class Candidates:
         self._cache.move_to_end(text)
         return self._cache[text]
 
+    def look_into(self, probes: int) -> None:
+        """Set into how many lists every search looks."""
+        for among in (self.everything, *self._cache.values()):
+            among.look_into(probes)
+
     def _make(self, text: str, satisfied: Flags, rows: Indices) -> CandidateSet:
         if self.lists is None or len(rows) <= EXACT_ROWS:
             features = self._library.features
             exact = ExactIndex(self._schema, features, self._bias, rows)
             return CandidateSet(text, satisfied, rows, exact, None)
-        selector = None
-        if text:
-            allowed = np.zeros(len(satisfied), np.bool_)
-            allowed[rows] = True
-            # FAISS keeps a pointer to the bitmap; its Python wrapper keeps the array alive
-            selector = faiss.IDSelectorBitmap(np.packbits(allowed, bitorder="little"))
+        if len(rows) < _OWN_LISTS_SHARE * len(self.everything):
+            return CandidateSet(text, satisfied, rows, self._own_lists(rows), None)
+        allowed = np.zeros(len(satisfied), np.bool_)
+        allowed[rows] = True
+        # FAISS keeps a pointer to the bitmap; its Python wrapper keeps the array alive
+        selector = faiss.IDSelectorBitmap(np.packbits(allowed, bitorder="little"))
         return CandidateSet(text, satisfied, rows, self.lists, selector)
+
+    def _own_lists(self, rows: Indices) -> InvertedLists:
+        """Index some rows apart: in the common lists, a query would mostly look at others."""
+        stored = self._library.grouping
+        assert stored is not None
+        which = np.searchsorted(self.everything.rows, rows)
+        features = self._library.features
+        grouping = narrow(Grouping(stored.centroids, stored.lists), features[rows], which)
+        probes = self.lists.probes if self.lists else stored.probes
+        return InvertedLists(self._schema, features, self._bias, rows, grouping, probes)
 
 
 def _nothing(library: Library, text: str, satisfied: Flags) -> str:

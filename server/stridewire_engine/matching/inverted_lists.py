@@ -47,6 +47,22 @@ def group_rows(features: Floats) -> Grouping:
     return Grouping(np.asarray(kmeans.centroids), lists[:, 0].astype(np.int32))
 
 
+def narrow(grouping: Grouping, features: Floats, which: Indices) -> Grouping:
+    """Return the grouping of some of the rows: empty lists dropped, centres moved to what is left.
+
+    Args:
+        grouping: Of M rows.
+        features: `(K, D)` normalised, of the rows that are left.
+        which: `(K,)` their places among the M.
+    """
+    used, lists = np.unique(grouping.lists[which], return_inverse=True)
+    order = np.argsort(lists, kind="stable")
+    starts = np.searchsorted(lists[order], np.arange(len(used)))
+    sums = np.add.reduceat(features[order].astype(np.float64), starts, axis=0)
+    counts = np.diff(np.append(starts, len(lists)))
+    return Grouping((sums / counts[:, None]).astype(np.float32), lists.astype(np.int32))
+
+
 class InvertedLists:
     """Inner-product search in the lists nearest to the query."""
 

@@ -72,7 +72,7 @@ def tune_probes(matcher: Matcher, queries: Floats, rng: np.random.Generator) -> 
     seed = int(rng.integers(2**31))
     for probes in _PROBES:
         if lists is not None:
-            lists.probes = probes
+            matcher.candidates.look_into(probes)
         cells = prove(matcher, queries, np.random.default_rng(seed))
         if all(c.recall >= LEAST_RECALL and c.cost_ratio <= MOST_COST_RATIO for c in cells):
             break
