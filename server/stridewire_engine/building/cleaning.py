@@ -21,6 +21,8 @@ _JUMP = np.deg2rad(2.0)
 _SPIKE = np.deg2rad(15.0)
 _SPIKE_SPEED = np.deg2rad(1000.0)
 _WIDEST_SPIKE = 3
+_FLIP = np.deg2rad(90.0)
+_WIDEST_FLIP_S = 0.25
 _FROZEN = 1e-6
 _GAP_S = 0.1
 _STILL = 0.15
@@ -77,21 +79,21 @@ def leading_pose(source: SourceMotion) -> int:
 
 
 def mend_spikes(source: SourceMotion, frame_rate: float) -> tuple[SourceMotion, list[str]]:
-    """Bridge joints that jump away and back within three frames; return a note of that.
+    """Bridge joints that jump away and back; return a note of that.
 
-    No joint turns away and back by 15 degrees, and at 1000 degrees/s or more, in so few frames;
-    solvers that flip a joint do.
+    No joint turns away and back by 15 degrees, at 1000 degrees/s or more, within three frames, and
+    none jumps by 90 degrees from frame to frame; solvers that flip a joint do, for up to 0.25 s.
 
     Args:
         source: As read.
         frame_rate: Frames per second.
     """
     rotations = source.rotations.copy()
-    threshold = max(_SPIKE, _SPIKE_SPEED / frame_rate)
+    narrow = max(_SPIKE, _SPIKE_SPEED / frame_rate)
     mended = np.zeros(rotations.shape[:2], bool)
-    for width in range(1, _WIDEST_SPIKE + 1):
-        if len(rotations) < width + 2:
-            break
+    widest = max(_WIDEST_SPIKE, round(_WIDEST_FLIP_S * frame_rate))
+    for width in range(1, min(widest, len(rotations) - 2) + 1):
+        threshold = narrow if width <= _WIDEST_SPIKE else _FLIP
         before, after = rotations[: -width - 1], rotations[width + 1 :]
         steps = _steps(rotations)
         jump = np.minimum(steps[: len(before)], steps[width:])
@@ -103,14 +105,18 @@ def mend_spikes(source: SourceMotion, frame_rate: float) -> tuple[SourceMotion, 
                 np.broadcast_to(a, (width, 4)), np.broadcast_to(b, (width, 4)), weight
             )
             mended[frame + 1 : frame + width + 1, joint] = True
-    if not mended.any():
-        return source, []
-    frame, joint = np.argwhere(mended)[0]
-    note = (
-        f"{int(mended.any(axis=-1).sum())} frame(s) with spikes were mended, the first at "
-        f"{frame / frame_rate:.2f} s in {source.skeleton.names[joint]}"
-    )
-    return replace(source, rotations=rotations), [note]
+    left = _steps(rotations) > _FLIP
+    notes = [
+        f"{int(where.any(axis=-1).sum())} {what}, the first at "
+        f"{np.argwhere(where)[0][0] / frame_rate:.2f} s in "
+        f"{source.skeleton.names[np.argwhere(where)[0][1]]}"
+        for what, where in (
+            ("frame(s) with spikes were mended", mended),
+            ("jump(s) of a joint by more than 90 degrees are left", left),
+        )
+        if where.any()
+    ]
+    return replace(source, rotations=rotations), notes
 
 
 def gaps(source: SourceMotion, frame_rate: float) -> list[str]:
