@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.unit.runtime.conftest import DT, opening
 
 from stridewire._errors import InvalidRequestError, NotFoundError, NotImplementedYetError
 from stridewire._messages import (
@@ -31,6 +30,7 @@ from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.library import Library, LibraryError
 from stridewire_engine.matching.presets import LOCOMOTION
 from stridewire_engine.runtime import Runtime, Session
+from unit.runtime.conftest import DT, opening
 
 Walk = Callable[..., Iterator[Frame]]
 NAN = float("nan")

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
-from tests.unit.runtime.conftest import DT, opening
 
 from stridewire._messages import (
     ClipEnd,
@@ -23,6 +22,7 @@ from stridewire.motion.clip import Pose
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.library import Library
 from stridewire_engine.runtime import Runtime, Session
+from unit.runtime.conftest import DT, opening
 
 Walk = Callable[..., Iterator[Frame]]
 
