@@ -21,6 +21,15 @@ CREDIT = (
 """Credit line of every synthetic library."""
 
 _Script = list[Segment]
+_SHUFFLE = [
+    Segment(3.0),
+    Segment(0.8, turn=0.6),
+    Segment(3.0),
+    Segment(0.7, side=0.15),
+    Segment(2.0),
+    Segment(0.8, turn=-0.6),
+    Segment(3.0),
+]
 _WALKS = (0.5, 0.8, 1.1, 1.4, 1.7)
 _JOGS = (2.2, 2.6)
 _RUNS = (3.0, 3.5, 4.0)
@@ -46,6 +55,7 @@ def synthetic_clips(seed: int = 0) -> list[Clip]:
 def _forward(rng: np.random.Generator) -> Iterator[tuple[str, _Script]]:
     for number in (1, 2):
         yield f"idle-{number}", [Segment(12.0)]
+    yield "idle-shuffle", _SHUFFLE
     yield from _steady()
     yield from _curves()
     yield from _changes()
@@ -103,13 +113,23 @@ def _changes() -> Iterator[tuple[str, _Script]]:
             f"stop-and-go-{speed}",
             [
                 Segment(1.5),
-                *[
-                    Segment(seconds, v)
-                    for v in (speed, 0.8 * speed)
-                    for seconds, v in ((2.0, v), (1.8, 0.0))
-                ],
+                Segment(2.0, speed),
+                Segment(1.8),
+                Segment(2.0, 0.8 * speed),
+                Segment(1.8),
             ],
         )
+    for speed, slow in ((1.3, 0.15), (2.5, 0.4)):
+        for side, turn in (("left", 2.9), ("right", -2.9)):
+            yield (
+                f"about-turn-{speed}-{side}",
+                [
+                    Segment(2.0, speed),
+                    Segment(0.6, slow),
+                    Segment(1.1, slow, turn),
+                    Segment(2.5, speed),
+                ],
+            )
 
 
 def _on_the_spot() -> Iterator[tuple[str, _Script]]:
@@ -134,6 +154,10 @@ def _on_the_spot() -> Iterator[tuple[str, _Script]]:
                 Segment(1.5, 1.2),
                 Segment(1.5),
             ],
+        )
+        yield (
+            f"turn-back-and-walk-{side}",
+            [Segment(1.0), Segment(1.2, 0.15, 2.7 * sign), Segment(2.5, 1.3), Segment(1.5)],
         )
         yield (
             f"sidestep-{side}",
