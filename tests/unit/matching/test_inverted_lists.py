@@ -11,7 +11,7 @@ from stridewire_engine.matching.inverted_lists import InvertedLists, group_rows,
 from stridewire_engine.matching.presets import LOCOMOTION
 from stridewire_engine.matching.search import Matcher
 
-PROBES = 48
+PROBES = 32
 
 
 @pytest.fixture
@@ -45,7 +45,8 @@ def test_nearly_every_best_row_is_found(grouped: Matcher, rng: np.random.Generat
     rows = np.flatnonzero(library.startable)
     exact = ExactIndex(LOCOMOTION, library.features, grouped.bias, rows)
     best = exact.search(augment_queries(LOCOMOTION, asked, by), 1)
-    assert np.mean(found.rows == best) >= 0.99
+    lowest = grouped.costs(asked, by, best).sum(axis=-1)
+    assert np.mean(found.costs <= lowest * (1.0 + 1e-6)) >= 0.99
     expected = grouped.costs(asked, by, found.rows).sum(axis=-1)
     assert np.array_equal(found.costs, expected)
 

@@ -20,7 +20,6 @@ from stridewire.motion.clip import Clip, Pose, TagSpan
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.building import build_library
 from stridewire_engine.building.synthetic import synthetic_clips
-from stridewire_engine.matching.presets import LOCOMOTION
 from stridewire_engine.runtime import Runtime
 from stridewire_engine.runtime.settings import TickSettings
 from unit.runtime.conftest import DT, opening
