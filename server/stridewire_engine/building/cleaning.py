@@ -116,7 +116,7 @@ def mend_spikes(source: SourceMotion, frame_rate: float) -> tuple[SourceMotion, 
         )
         if where.any()
     ]
-    return replace(source, rotations=rotations), notes
+    return (replace(source, rotations=rotations) if mended.any() else source), notes
 
 
 def gaps(source: SourceMotion, frame_rate: float) -> list[str]:
