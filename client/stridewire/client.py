@@ -1,7 +1,7 @@
 """The client: the same interface to a server over gRPC and to a runtime in this process."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import TracebackType
 
 from stridewire._messages import (
@@ -96,6 +96,8 @@ class Client:
         k: int = 5,
         library: str = "",
         exclude: Sequence[ClipTime] = (),
+        filter: str = "",
+        weights: Mapping[str, float] | None = None,
     ) -> SearchResult:
         """Find the moments that continue best from a moment of a clip.
 
@@ -105,14 +107,19 @@ class Client:
             intent: Where to go; None means where the clip itself goes.
             k: Number of matches.
             library: Name of the library; empty means the server's default.
-            exclude: Moments that must not be among the matches.
+            exclude: Moments that must not be among the matches; the result tells those that would
+                have been better.
+            filter: Tag expression, such as `(walk | run) & !turn`; empty means all.
+            weights: Of channels by name; the schema's where absent. Cost is proportional to them.
 
         Raises:
             InvalidRequestError: If a value is not allowed.
             NotFoundError: If there is no such library or clip.
         """
         return self._transport.search(
-            SearchQuery(ClipTime(clip, time_s), intent, k, library, tuple(exclude))
+            SearchQuery(
+                ClipTime(clip, time_s), intent, k, library, tuple(exclude), filter, weights or {}
+            )
         )
 
     def info(self) -> ServerInfo:

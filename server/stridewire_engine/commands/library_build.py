@@ -8,11 +8,12 @@ from pathlib import Path
 import click
 
 from stridewire.motion.clip import Clip
-from stridewire_engine.building.build import build_library
+from stridewire_engine.building.build import MatchingOptions, build_library
 from stridewire_engine.building.importing import FASTEST, SLOWEST, import_files, motion_files
 from stridewire_engine.building.profiles import Profile, ProfileError, load_profile
 from stridewire_engine.building.sidecars import SidecarError, Splits, read_splits
 from stridewire_engine.commands.library_info import show
+from stridewire_engine.commands.matching_options import matching_options
 from stridewire_engine.library import LibraryError
 
 _FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
@@ -34,6 +35,7 @@ _FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 @click.option("--split-file", type=_FILE, help="CSV with the columns data, subject and split.")
 @click.option("--tagged", multiple=True, metavar="TAG", help="Keep clips that hold one of these.")
 @click.option("--jobs", default=2, show_default=True, type=click.IntRange(1, 64), help="Processes.")
+@matching_options
 @click.option("--licence", default="", help="Licence of the motion.")
 @click.option("--credit", default="", help="Credit line of the motion.")
 def build(
@@ -49,6 +51,7 @@ def build(
     jobs: int,
     licence: str,
     credit: str,
+    matching: MatchingOptions,
 ) -> None:
     """Build a library from motion files (BVH, AMC with its ASF) and folders of them.
 
@@ -71,6 +74,7 @@ def build(
             licence=licence,
             credit=credit,
             mirror=mirror,
+            matching=matching,
             build_command=shlex.join(["stridewire", *sys.argv[1:]]),
         )
     except LibraryError as error:

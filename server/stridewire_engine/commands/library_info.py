@@ -13,8 +13,12 @@ from stridewire_engine.library import Library, LibraryError
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def info(folder: Path, as_json: bool) -> None:
-    """Say what is in a library."""
+    """Say what is in a library, and check that it is whole."""
     library = open_library(folder)
+    try:
+        library.verify()
+    except LibraryError as error:
+        raise click.ClickException(str(error)) from None
     if as_json:
         click.echo(json.dumps(_facts(library), indent=2))
     else:
@@ -40,8 +44,24 @@ def show(library: Library) -> None:
     )
     for label, text in (("licence", about.licence), ("credit", about.credit)):
         click.echo(f"  {label}: {text or 'not given'}")
+    click.echo(f"  {_search_line(library)}")
     for tag, held in library.seconds_by_tag().items():
         click.echo(f"  {tag:<16}{held:9.1f} s")
+
+
+def _search_line(library: Library) -> str:
+    """Say what is matched and how sure the search is."""
+    schema = library.manifest.schema
+    proof = schema["proof"]
+    start = f"search: schema {schema['name']}, {proof['rows']} moments, {proof['index']}"
+    if proof["index"] == "exact":
+        return start
+    worst = proof["worst_cell"]
+    where = f"{worst['weights']} weights, filter {worst['filter'] or 'none'}"
+    return (
+        f"{start}, {proof['probes']} looked into; best row found in {100 * worst['recall']:.1f} % "
+        f"at worst ({where}), cost ratio {proof['worst_cost_ratio']:.4f} at worst"
+    )
 
 
 def _facts(library: Library) -> dict[str, object]:
@@ -49,6 +69,7 @@ def _facts(library: Library) -> dict[str, object]:
     return {
         **asdict(library.info()),
         "path": str(library.path),
+        "proof": library.manifest.schema["proof"],
         "seconds": round(seconds, 2),
         "seconds_by_tag": {tag: round(s, 2) for tag, s in library.seconds_by_tag().items()},
     }
