@@ -11,7 +11,7 @@ from stridewire_engine.matching.inverted_lists import InvertedLists, group_rows,
 from stridewire_engine.matching.presets import LOCOMOTION
 from stridewire_engine.matching.search import Matcher
 
-PROBES = 64
+PROBES = 128
 
 
 @pytest.fixture
