@@ -25,6 +25,9 @@ _FLIP = np.deg2rad(90.0)
 _WIDEST_FLIP_S = 0.25
 _FROZEN = 1e-6
 _GAP_S = 0.1
+_SHORTEST_LAP_S, _LONGEST_LAP_S = 0.4, 20.0
+_LAP_GAP = 0.02
+_LAP_KICK = 1.5
 _STILL = 0.15
 _FLOOR_PERCENTILE = 25.0
 _TOES = ("LeftToe", "RightToe")
@@ -128,6 +131,26 @@ def gaps(source: SourceMotion, frame_rate: float) -> list[str]:
     if not len(dead):
         return []
     return [f"{len(dead)} gap(s) without any motion, the first at {dead[0] / frame_rate:.2f} s"]
+
+
+def find_loop(clip: Clip) -> Clip:
+    """Return the clip marked as a loop if its last frame is its first pose again, one lap on.
+
+    Joints must come back within 2 cm and 1.5 m/s (a foot's velocity changes by 1 m/s from frame to
+    frame), and have moved in between.
+    """
+    positions, _ = kinematics.forward(clip.skeleton, clip.pose.hips, clip.pose.rotations)
+    velocities = differences(positions, 1.0 / clip.frame_rate)
+    apart = np.linalg.norm(positions[-1] - positions[0], axis=-1).max()
+    faster = np.linalg.norm(velocities[-1] - velocities[0], axis=-1).max()
+    moved = np.ptp(positions, axis=0).max()
+    loops = (
+        _SHORTEST_LAP_S <= clip.seconds <= _LONGEST_LAP_S
+        and apart < _LAP_GAP
+        and faster < _LAP_KICK
+        and moved > 5.0 * _LAP_GAP
+    )
+    return replace(clip, loops=bool(loops))
 
 
 def _steps(rotations: Quaternions) -> Floats:

@@ -11,7 +11,7 @@ from pathlib import Path
 from stridewire.formats.reading import READERS, read_motion
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion.clip import Clip
-from stridewire_engine.building.cleaning import clean, gaps, leading_pose, mend_spikes
+from stridewire_engine.building.cleaning import clean, find_loop, gaps, leading_pose, mend_spikes
 from stridewire_engine.building.joint_mapping import map_joints
 from stridewire_engine.building.profiles import Profile, shipped_profiles
 from stridewire_engine.building.retarget import fits, retarget
@@ -151,7 +151,8 @@ def import_file(
     floor = 0.0 if motion.unchanged else None
     clip = clean(name or path.stem, motion.hips, motion.rotations, rate, path.name, floor)
     notes += motion.notes
-    tagged = tag(clip, f"{path.stem} {sidecar.words}")
+    tagged = find_loop(tag(clip, f"{path.stem} {sidecar.words}"))
+    notes += ["it loops"] if tagged.loops else []
     return Outcome(path, tagged, notes=(*source.notes, *notes), profile=profile.name)
 
 

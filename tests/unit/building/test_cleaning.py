@@ -10,6 +10,7 @@ from stridewire.motion import kinematics, quaternion
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.building.cleaning import (
     clean,
+    find_loop,
     floor_height,
     gaps,
     leading_pose,
@@ -99,6 +100,14 @@ def test_a_figure_that_stands_has_its_feet_planted() -> None:
     rotations = quaternion.identity(60, len(REFERENCE), dtype=np.float64)
     clip = clean("stand", np.tile([0.0, 2.95, 0.0], (60, 1)), rotations, 60.0, "")
     assert clip.contacts.all()
+
+
+def test_loops_are_found() -> None:
+    """Whole strides come back to their first pose; half a stride more does not."""
+    hips, rotations = walking(round(2 * 60 / 0.9) + 1)
+    hips[:, 1] = 0.93
+    assert find_loop(clean("walk", hips, rotations, 60.0, "")).loops
+    assert not find_loop(clean("walk", hips[:-33], rotations[:-33], 60.0, "")).loops
 
 
 def test_a_clean_clip_has_a_root_and_sixty_frames() -> None:
