@@ -16,8 +16,7 @@ from stridewire._messages import (
     Step,
     StreamError,
 )
-from stridewire_engine.building import embedded_library
-from stridewire_engine.library import Library
+from stridewire_engine.building import open_library
 from stridewire_engine.runtime import Runtime, Session
 
 
@@ -25,13 +24,12 @@ class InProcess:
     """Runs characters in this process; a `stridewire._transport.Transport`."""
 
     def __init__(self, library: str | None = None) -> None:
-        """Open a library folder, or the embedded library.
+        """Open a library folder, a folder of motion files, or the embedded library.
 
         Raises:
             LibraryError: If the folder is no usable library.
         """
-        opened = embedded_library() if library is None else Library.open(library)
-        self.runtime = Runtime([opened])
+        self.runtime = Runtime([open_library(library)])
 
     def open(self, message: Open) -> "InProcessStream":
         """Open a session."""

@@ -15,7 +15,7 @@ def target_options(command: Callable[..., Any]) -> Callable[..., Any]:
     library = click.option(
         "--library",
         type=click.Path(file_okay=False, path_type=Path),
-        help="Run in this process over this library folder instead.",
+        help="Run in this process over this library or folder of motion files instead.",
     )
     return address(library(command))
 

@@ -29,7 +29,7 @@ SCRIPTS = ("walk-turn-stop", "circle", "stop-and-go", "u-turns")
 @click.option(
     "--library",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Library folder; the embedded synthetic one by default.",
+    help="Library or folder of motion files; the embedded synthetic library by default.",
 )
 @click.option("--seconds", type=click.FloatRange(1.0), default=10.0, show_default=True)
 @click.option("--characters", type=click.IntRange(1, 256), default=4, show_default=True)

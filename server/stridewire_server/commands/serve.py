@@ -22,7 +22,8 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
     "libraries",
     multiple=True,
     metavar="[NAME=]FOLDER",
-    help="Library to serve, the first is the default one; without any, the embedded synthetic one.",
+    help="Library or folder of motion files to serve, the first is the default one; without any, "
+    "the embedded synthetic library.",
 )
 @click.option("--address", default="127.0.0.1:50051", show_default=True, help="Port 0 picks one.")
 @click.option("--insecure", is_flag=True, help="Allow an address that other machines can reach.")
@@ -45,16 +46,15 @@ def serve(libraries: tuple[str, ...], address: str, insecure: bool, as_json: boo
 def _open(given: tuple[str, ...]) -> "list[Library]":
     from dataclasses import replace
 
-    from stridewire_engine.building import embedded_library
-    from stridewire_engine.library import Library
+    from stridewire_engine.building import open_library
 
     if not given:
         click.echo("opening the embedded library; the first start builds it …", err=True)
-        return [embedded_library()]
+        return [open_library()]
     libraries = []
     for text in given:
         name, _, folder = text.rpartition("=")
-        library = Library.open(folder)
+        library = open_library(folder)
         if name:
             library.manifest = replace(library.manifest, name=name)
         libraries.append(library)
