@@ -74,7 +74,7 @@ def test_build_of_tagged_clips_only(folder: Path, tmp_path: Path) -> None:
     """Clips without the tag are left out."""
     result = run("build", folder / "walk.bvh", "--out", tmp_path / "lib", "--tagged", "run")
     assert result.exit_code == 1
-    assert "kept 0 clips tagged run" in result.output
+    assert "kept 0 clips of run" in result.output
 
 
 def test_report_draws_and_says_what_is_missing(folder: Path, tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 import multiprocessing
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -55,14 +55,14 @@ class _Job:
 
 
 def motion_files(
-    inputs: Iterable[Path], split: str | None = None, splits: Splits | None = None
+    inputs: Iterable[Path], chosen: Collection[str] = (), splits: Splits | None = None
 ) -> list[Path]:
     """Return the motion files among files and in folders, sorted, each once.
 
     Args:
         inputs: Files, taken whatever their ending, and folders, searched for known endings.
-        split: Take only files of this split.
-        splits: Which files are in which split.
+        chosen: Take only files of these splits.
+        splits: Which files are in which split; None where all are taken.
 
     Raises:
         SidecarError: If an index is malformed.
@@ -75,7 +75,7 @@ def motion_files(
             known = file.suffix.lower() in READERS and file.is_file()
             if path.is_dir() and not known:
                 continue
-            if splits is None or splits.of(file, sidecars.of(file)) == split:
+            if splits is None or splits.of(file, sidecars.of(file)) in chosen:
                 found[file] = None
     return list(found)
 

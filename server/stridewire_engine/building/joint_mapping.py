@@ -136,6 +136,9 @@ def _head(skeleton: Skeleton, chest: int, joints: dict[str, int]) -> dict[str, i
     necks = [j for j in above if "neck" in names[j] and not _IGNORED.search(names[j])]
     if not necks:
         necks = [j for j in above if "necktwist" in names[j]]
+    if head is None and not necks:
+        necks = [j for j in above if skeleton.parents[j] == chest][:1]
+        necks += [j for j in above if necks and skeleton.parents[j] == necks[0]][:1]
     found = {"Neck": necks[0]} if necks else {}
     if head is None and len(necks) > 1:
         head = necks[-1]
@@ -160,8 +163,7 @@ def _common(skeleton: Skeleton, a: int, b: int) -> int:
 
 def _by_shape(skeleton: Skeleton) -> JointMap:
     """Tell legs and arms by the tree: the two pairs of longest mirrored chains on one trunk."""
-    chains = _limbs(skeleton)
-    pairs = _pairs(skeleton, chains)
+    pairs = _longest(skeleton, _pairs(skeleton, _limbs(skeleton)))
     if len(pairs) < 2:
         raise MappingError("the tree has no two pairs of limbs")
     depth = [len(_path(skeleton, _common(skeleton, pair[0][0], pair[1][0]))) for pair in pairs]
@@ -179,6 +181,15 @@ def _by_shape(skeleton: Skeleton) -> JointMap:
     return _with_trunk(
         skeleton, joints, ("all joints were told by the shape of the tree, not by their names",)
     )
+
+
+def _longest(
+    skeleton: Skeleton, pairs: list[tuple[list[int], list[int]]]
+) -> list[tuple[list[int], list[int]]]:
+    """Return the pairs at least a third as long as the longest: no fingers, no feathers."""
+    lengths = [np.linalg.norm(skeleton.offsets[left[1:]], axis=-1).sum() for left, _ in pairs]
+    least = max(lengths, default=0.0) / 3.0
+    return [pair for pair, length in zip(pairs, lengths, strict=True) if length >= least]
 
 
 def _limbs(skeleton: Skeleton) -> list[list[int]]:

@@ -7,7 +7,7 @@ Frames that crawl, sit or lie get `low`. Words of the file's name that no speed 
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from itertools import pairwise
 
@@ -44,6 +44,7 @@ FILE_WORDS = {
 }
 """Tags of the whole clip by how words of file names and descriptions begin."""
 
+_MOST = 0.8
 _SMOOTHING_S = 0.5
 _SHORTEST_S = 0.25
 _AROUND_S = 0.7
@@ -100,6 +101,23 @@ def measured_tags(clip: Clip) -> tuple[TagSpan, ...]:
     masks |= _changes(speed, masks["idle"], round(_AROUND_S * frame_rate))
     spans = [span for name, mask in masks.items() for span in _spans(name, mask, shortest)]
     return tuple(sorted(spans, key=lambda span: (span.start, span.name)))
+
+
+def only_tagged(clip: Clip, names: Collection[str]) -> bool:
+    """Return whether a clip is of some kinds of motion: most frames are, and no words say others.
+
+    Args:
+        clip: With its tags.
+        names: Tags, of which at least one holds in four of five frames; words of file names and
+            descriptions that are not among them leave the clip out.
+    """
+    covered = np.zeros(len(clip), bool)
+    for span in clip.tags:
+        if span.name in FILE_WORDS and span.name not in names:
+            return False
+        if span.name in names:
+            covered[span.start : span.end] = True
+    return bool(covered.mean() >= _MOST)
 
 
 def local_velocity(pose: Pose, frame_rate: float) -> Floats:

@@ -12,6 +12,7 @@ from stridewire_engine.building.build import MatchingOptions, build_library
 from stridewire_engine.building.importing import FASTEST, SLOWEST, import_files, motion_files
 from stridewire_engine.building.profiles import Profile, ProfileError, load_profile
 from stridewire_engine.building.sidecars import SidecarError, Splits, read_splits
+from stridewire_engine.building.tagging import only_tagged
 from stridewire_engine.commands.library_info import show
 from stridewire_engine.commands.matching_options import matching_options
 from stridewire_engine.library import LibraryError
@@ -31,9 +32,9 @@ _FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 @click.option("--mirror/--no-mirror", default=True, show_default=True, help="Add mirrored copies.")
 @click.option("--profile", "profiles", multiple=True, type=_FILE, help="Joint map to try first.")
 @click.option("--rate", type=click.FloatRange(SLOWEST, FASTEST), help="True rate of all files.")
-@click.option("--split", help="Take only files of this split; needs --split-file.")
+@click.option("--split", "split", multiple=True, help="Take only files of it; needs --split-file.")
 @click.option("--split-file", type=_FILE, help="CSV with the columns data, subject and split.")
-@click.option("--tagged", multiple=True, metavar="TAG", help="Keep clips that hold one of these.")
+@click.option("--tagged", multiple=True, metavar="TAG", help="Keep clips of nothing else.")
 @click.option("--jobs", default=2, show_default=True, type=click.IntRange(1, 64), help="Processes.")
 @matching_options
 @click.option("--licence", default="", help="Licence of the motion.")
@@ -45,7 +46,7 @@ def build(
     mirror: bool,
     profiles: tuple[Path, ...],
     rate: float | None,
-    split: str | None,
+    split: tuple[str, ...],
     split_file: Path | None,
     tagged: tuple[str, ...],
     jobs: int,
@@ -61,8 +62,8 @@ def build(
     paths = _files(inputs, split, split_file)
     clips = _import(paths, [_profile(path) for path in profiles], rate, jobs)
     if tagged:
-        clips = [clip for clip in clips if any(tag.name in tagged for tag in clip.tags)]
-        click.echo(f"kept {len(clips)} clips tagged {', '.join(tagged)}")
+        clips = [clip for clip in clips if only_tagged(clip, tagged)]
+        click.echo(f"kept {len(clips)} clips of {', '.join(tagged)}")
     if not clips:
         raise click.ClickException("no clip is left; the reasons are above")
     click.echo(f"writing {len(clips)} clips{' and their mirrored copies' if mirror else ''} …")
@@ -82,8 +83,8 @@ def build(
     show(library)
 
 
-def _files(inputs: Sequence[Path], split: str | None, split_file: Path | None) -> list[Path]:
-    if (split is None) != (split_file is None):
+def _files(inputs: Sequence[Path], split: tuple[str, ...], split_file: Path | None) -> list[Path]:
+    if bool(split) != bool(split_file):
         raise click.UsageError("--split and --split-file go together")
     try:
         splits = _splits(split, split_file)
@@ -92,17 +93,19 @@ def _files(inputs: Sequence[Path], split: str | None, split_file: Path | None) -
         raise click.ClickException(str(error)) from None
     if not paths:
         where = ", ".join(map(str, inputs))
-        of = f" of split {split!r}" if split else ""
+        of = f" of split {' or '.join(split)}" if split else ""
         raise click.ClickException(f"no motion file{of} in {where}; expected .bvh or .amc files")
     return paths
 
 
-def _splits(split: str | None, split_file: Path | None) -> Splits | None:
+def _splits(split: tuple[str, ...], split_file: Path | None) -> Splits | None:
     if split_file is None:
         return None
     splits = read_splits(split_file)
-    if split not in splits.names:
-        raise click.UsageError(f"--split {split!r}; {split_file} has {', '.join(splits.names)}")
+    if unknown := [name for name in split if name not in splits.names]:
+        raise click.UsageError(
+            f"--split {unknown[0]!r}; {split_file} has {', '.join(splits.names)}"
+        )
     return splits
 
 

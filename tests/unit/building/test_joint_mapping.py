@@ -48,8 +48,25 @@ def test_unknown_names_are_mapped_by_shape() -> None:
     motion = source(rename=rename)
     mapped = map_joints(motion.skeleton)
     assert mapped.uncertain
-    for part in ("LeftUpLeg", "RightFoot", "LeftArm", "RightHand", "Hips", "Spine2"):
+    for part in ("LeftUpLeg", "RightFoot", "LeftArm", "RightHand", "Hips", "Spine2", "Neck"):
         assert mapped.joints[part] == rename[part]
+
+
+def test_fingers_are_no_arms() -> None:
+    """Three fingers on each hand, alike and unnamed, do not pass for a pair of limbs."""
+    names, parents = [f"Bone.{i}" for i in range(len(REFERENCE))], list(REFERENCE.parents)
+    offsets = list(REFERENCE.offsets)
+    for hand, out in ((REFERENCE.index("LeftHand"), 1.0), (REFERENCE.index("RightHand"), -1.0)):
+        for finger in range(3):
+            at = hand
+            for _ in range(3):
+                parents.append(at)
+                at = len(names)
+                names.append(f"Bone.{at}")
+                offsets.append(np.array([0.03 * out, 0.0, 0.01 * finger]))
+    mapped = map_joints(Skeleton(tuple(names), tuple(parents), np.array(offsets)))
+    assert mapped.joints["LeftHand"] == f"Bone.{REFERENCE.index('LeftHand')}"
+    assert mapped.joints["RightArm"] == f"Bone.{REFERENCE.index('RightArm')}"
 
 
 def test_a_chain_is_no_human() -> None:

@@ -47,7 +47,7 @@ def test_splits_choose_files(data: Path) -> None:
     splits = read_splits(data / "split.csv")
 
     def chosen(split: str) -> list[str]:
-        return [path.name for path in motion_files([data], split, splits)]
+        return [path.name for path in motion_files([data], [split], splits)]
 
     assert set(chosen("test")) == {"06_01.bvh", "06_13.bvh", "walk_subject4.bvh"}
     assert chosen("train") == ["07_01.amc"]

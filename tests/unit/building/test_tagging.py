@@ -10,7 +10,7 @@ from stridewire.motion.clip import Clip
 from stridewire.motion.mirror import mirror_clip
 from stridewire.motion.root import extract_root
 from stridewire.motion.skeleton import REFERENCE
-from stridewire_engine.building.tagging import file_tags, measured_tags
+from stridewire_engine.building.tagging import file_tags, measured_tags, only_tagged, tag
 
 
 def gliding(
@@ -44,7 +44,7 @@ def gliding(
 def tags_in_the_middle(clip: Clip) -> set[str]:
     """Return the tags that hold halfway."""
     middle = len(clip) // 2
-    return {tag.name for tag in measured_tags(clip) if tag.start <= middle < tag.end}
+    return {span.name for span in measured_tags(clip) if span.start <= middle < span.end}
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def test_motion_tells_the_tag(clip: Clip, tags: set[str]) -> None:
 def test_setting_off_and_stopping_are_spans_around_the_change() -> None:
     """A start lies around the end of standing, a stop around its beginning."""
     clip = gliding(lambda t: 1.5 * ((t > 2.0) & (t < 6.0)), seconds=8.0)
-    spans = {tag.name: tag for tag in measured_tags(clip) if tag.name in ("start", "stop")}
+    spans = {s.name: s for s in measured_tags(clip) if s.name in ("start", "stop")}
     assert spans["start"].start < 2.0 * 60 < spans["start"].end < 3.2 * 60
     assert 4.8 * 60 < spans["stop"].start < 6.0 * 60 < spans["stop"].end
 
@@ -78,7 +78,17 @@ def test_setting_off_and_stopping_are_spans_around_the_change() -> None:
 def test_a_single_step_is_neither_start_nor_stop() -> None:
     """Shifting aside at half a metre per second between two stands is no start."""
     clip = gliding(lambda t: 0.5 * ((t > 2.0) & (t < 3.0)))
-    assert not {"start", "stop"} & {tag.name for tag in measured_tags(clip)}
+    assert not {"start", "stop"} & {span.name for span in measured_tags(clip)}
+
+
+def test_clips_of_some_kinds_only() -> None:
+    """Most frames must be of them, and no word may say otherwise."""
+    walk = tag(gliding(1.2), "stroll")
+    assert only_tagged(walk, ["walk", "idle"])
+    assert not only_tagged(walk, ["run"])
+    assert not only_tagged(tag(gliding(1.2), "dance"), ["walk"])
+    half = tag(gliding(lambda t: 1.2 + 3.0 * (t > 3.0)), "stroll")
+    assert not only_tagged(half, ["walk"])
 
 
 def test_mirrored_motion_has_mirrored_tags() -> None:
@@ -101,4 +111,4 @@ def test_mirrored_motion_has_mirrored_tags() -> None:
 )
 def test_words_of_names_become_tags(words: str, tags: set[str]) -> None:
     """Beginnings of words count, not letters within them; walking is measured, not read."""
-    assert {tag.name for tag in file_tags(words, 100)} == tags
+    assert {span.name for span in file_tags(words, 100)} == tags
