@@ -1,0 +1,13 @@
+"""`stridewire evaluate`: figures of motion, beside the captured motion and a naive baseline."""
+
+import click
+
+from stridewire_engine.commands.evaluate_stream import stream
+
+
+@click.group()
+def evaluate() -> None:
+    """Measure how good motion is."""
+
+
+evaluate.add_command(stream)

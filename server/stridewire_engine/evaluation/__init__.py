@@ -1,0 +1,1 @@
+"""The judge: what good motion is, in figures beside those of the captured motion."""

@@ -1,0 +1,236 @@
+"""Streaming for evaluation: the very tick that serves, driven by a script, everything noted.
+
+Characters of all seeds share the ticks. What a transition is forced on, a match of low rank, a root
+that is driven faster than the clip, and late labels are made here, around the tick, not in it.
+"""
+
+from collections.abc import Callable
+from copy import copy
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from stridewire.motion import kinematics, quaternion
+from stridewire.motion.array_types import Floats, Indices, Vectors
+from stridewire.motion.clip import Clip, Pose
+from stridewire.scripts import script
+from stridewire_engine.evaluation.cell import Cell
+from stridewire_engine.library import Library
+from stridewire_engine.matching.candidates import CandidateSet
+from stridewire_engine.matching.search import Found, Matcher
+from stridewire_engine.runtime import TickSettings, sampling
+from stridewire_engine.runtime.characters import Characters
+from stridewire_engine.runtime.tick import Block, Tick
+from stridewire_engine.stitchers import STITCHERS
+
+RATE = 60.0
+PER_SEED = 2
+_MAX_SPEED = 20.0
+_SPACING = 3.0
+
+
+class Wanted(NamedTuple):
+    """What is asked of S characters in T frames."""
+
+    velocity: Floats
+    """`(T, S, 2)` m/s."""
+    facing: Floats
+    """`(T, S)` radians, NaN for along the velocity."""
+
+
+class Seams(NamedTuple):
+    """Transitions, K of them; beginnings are not among them."""
+
+    frame: Indices
+    """`(K,)` first frame that shows the new moment."""
+    character: Indices
+    from_row: Indices
+    """`(K,)` row of the library that was showing, in the frame before."""
+
+
+@dataclass(frozen=True)
+class Stream:
+    """What S characters showed in T frames."""
+
+    pose: Pose
+    """`(T, S, …)`."""
+    positions: Vectors
+    """`(T, S, J, 3)` joints in the world, float64."""
+    rows: Indices
+    """`(T, S)` row of the library that was nearest."""
+    moments: sampling.Moments
+    """`(T, S)`."""
+    since: Indices
+    """`(T, S)` frames since the last transition; those since the beginning count from 1000."""
+    foot_targets: Vectors
+    """`(T, S, 2, 3)`, NaN where not locked."""
+    simulated: Floats
+    """`(T, S, 4)`."""
+    wanted: Wanted
+    seams: Seams
+
+    def clip(self, library: Library, character: int, name: str) -> Clip:
+        """Return what one character did, for drawing."""
+        return Clip(
+            name,
+            library.skeleton,
+            RATE,
+            self.pose[:, character],
+            library.contacts[self.rows[:, character]],
+        )
+
+
+def wanted_of(cell: Cell) -> Wanted:
+    """Return what the cell's script asks for."""
+    asked = script(cell.script)
+    frames = round(cell.seconds * RATE)
+    velocity = np.empty((frames, len(cell.seeds) * PER_SEED, 2))
+    facing = np.empty(velocity.shape[:2])
+    for i, seed in enumerate(cell.seeds):
+        mine = slice(i * PER_SEED, (i + 1) * PER_SEED)
+        for frame in range(frames):
+            velocity[frame, mine], facing[frame, mine] = asked.controls(
+                frame / RATE, PER_SEED, seed
+            )
+    return Wanted(velocity, facing)
+
+
+def stream(library: Library, matcher: Matcher, cell: Cell, wanted: Wanted) -> Stream:
+    """Drive characters through the tick.
+
+    Args:
+        library: The library as it is; labels and rows are told of it.
+        matcher: Of it.
+        cell: What is measured.
+        wanted: Controls.
+    """
+    settings = forced(cell.settings, cell.forced_interval_frames)
+    played = copy(matcher) if cell.match_rank == 1 else _RankedMatcher(matcher, cell.match_rank)
+    played.library = perturbed(library, cell.root_scale, cell.label_shift_frames)
+    state = begin(matcher, cell, wanted, settings)
+    names = [stitcher.name for stitcher in STITCHERS]
+    state.stitcher[:] = names.index(cell.stitch) if cell.stitch else 0
+    state.foot_lock[:] = cell.foot_lock
+    tick = Tick(played, settings, _MAX_SPEED, lambda: 0.0)
+    sets = {0: played.candidates.everything}
+    dt = np.full(len(state), 1.0 / RATE)
+    return record(library, state, wanted, lambda: tick.step(state, dt, sets))
+
+
+def begin(matcher: Matcher, cell: Cell, wanted: Wanted, settings: TickSettings) -> Characters:
+    """Return characters side by side that look where they are to go; searches are staggered."""
+    count = wanted.velocity.shape[1]
+    state = Characters.allocate(count, len(matcher.library.skeleton), len(matcher.schema.channels))
+    state.weights[...] = matcher.schema.weights
+    lots = [np.random.default_rng(seed).random(PER_SEED) for seed in cell.seeds]
+    state.until_search[:] = np.concatenate(lots)[:count] * settings.search_interval
+    state.root_position[:, 0] = _SPACING * np.arange(count)
+    state.sim_position[:] = state.root_position[:, ::2]
+    heading = np.arctan2(wanted.velocity[0, :, 0], wanted.velocity[0, :, 1])
+    heading = np.where(np.isnan(wanted.facing[0]), heading, wanted.facing[0])
+    for angle in (state.root_yaw, state.sim_yaw, state.goal_yaw):
+        angle[:] = heading
+    return state
+
+
+def record(
+    library: Library, state: Characters, wanted: Wanted, step: Callable[[], Block]
+) -> Stream:
+    """Step once a frame and note what is shown and which moment is playing."""
+    blocks: list[Block] = []
+    playing, seams = [], []
+    clip_before, time_before = state.clip.copy(), state.clip_time.copy()
+    for frame, (velocity, facing) in enumerate(zip(*wanted, strict=True)):
+        state.desired_velocity[:] = velocity
+        state.desired_facing[:] = facing
+        block = step()
+        blocks.append(block)
+        playing.append((state.clip.copy(), state.clip_time.copy()))
+        if block.jumps is not None:
+            who = block.jumps.characters[block.jumps.from_clip >= 0]
+            old = sampling.moments(library, clip_before[who], time_before[who]).nearest
+            seams.append(Seams(np.full(len(who), frame), who, old))
+        clip_before, time_before = playing[-1]
+    moments = sampling.moments(library, *(np.stack(part) for part in zip(*playing, strict=True)))
+    root = np.stack([block.root for block in blocks]).astype(np.float64)
+    pose = Pose(
+        root[..., :3],
+        root[..., 3:],
+        np.stack([block.hips for block in blocks]).astype(np.float64),
+        np.stack([block.rotations for block in blocks]).astype(np.float64),
+    )
+    joined = Seams(*(np.concatenate(part) for part in zip(*seams, strict=True)))
+    return Stream(
+        pose,
+        kinematics.forward_world(library.skeleton, pose)[0],
+        moments.nearest,
+        moments,
+        _since(joined, root.shape[:2]),
+        np.stack([block.foot_targets for block in blocks]).astype(np.float64),
+        np.stack([block.simulated_root for block in blocks]),
+        wanted,
+        joined,
+    )
+
+
+def forced(settings: TickSettings, interval_frames: int) -> TickSettings:
+    """Return settings under which every search is a jump and comes every so many frames."""
+    if not interval_frames:
+        return settings
+    return replace(
+        settings,
+        search_interval=interval_frames / RATE,
+        continuing_bias=-1e6,
+        least_improvement=0.0,
+        control_jump=np.inf,
+        facing_jump=np.inf,
+        idle_speed=0.0,
+    )
+
+
+def perturbed(library: Library, root_scale: float, label_shift_frames: int) -> Library:
+    """Return the library with roots that go further and with contact labels that come late."""
+    if root_scale == 1.0 and not label_shift_frames:
+        return library
+    other = copy(library)
+    other.root_position = library.root_position * np.float32(root_scale)
+    other.contacts = library.contacts.copy()
+    for entry in library.clips:
+        frames = np.arange(entry.frames) - label_shift_frames
+        rows = entry.start + np.clip(frames, 0, entry.frames - 1)
+        other.contacts[entry.start : entry.start + entry.frames] = library.contacts[rows]
+    return other
+
+
+class _RankedMatcher(Matcher):
+    """Finds the k-th best match instead of the best."""
+
+    def __init__(self, matcher: Matcher, rank: int) -> None:
+        self.__dict__.update(vars(matcher))
+        self._rank_wanted = rank
+
+    def search(
+        self,
+        queries: Floats,
+        weights: Floats,
+        excluded: Indices,
+        k: int = 1,
+        candidates: CandidateSet | None = None,
+    ) -> Found:
+        found = super().search(queries, weights, excluded, self._rank_wanted, candidates)
+        return Found(found.rows[:, -1:], found.costs[:, -1:], found.channel_costs[:, -1:])
+
+
+def _since(seams: Seams, shape: tuple[int, ...]) -> Indices:
+    frames = np.arange(shape[0])[:, None]
+    last = np.full(shape, -1000)
+    last[seams.frame, seams.character] = seams.frame
+    last = np.maximum.accumulate(last, axis=0)
+    return np.asarray(frames - last)
+
+
+def under_root(stream: Stream, local: Vectors) -> Vectors:
+    """Place points `(T, S, K, 3)` of the root's frame under the streamed root."""
+    turn = stream.pose.root_rotation[:, :, None]
+    return quaternion.rotate(turn, local) + stream.pose.root_position[:, :, None]

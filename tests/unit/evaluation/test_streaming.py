@@ -1,0 +1,84 @@
+"""Streaming for evaluation is the serving tick, with what is forced on it made around it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from stridewire._messages import CharacterSpec, GroundPose, Open, Step
+from stridewire_engine.evaluation.cell import Cell
+from stridewire_engine.evaluation.naive import naive_stream
+from stridewire_engine.evaluation.streaming import Stream, perturbed, stream, wanted_of
+from stridewire_engine.library import Library
+from stridewire_engine.matching.search import Matcher
+from stridewire_engine.runtime import Runtime
+
+CELL = Cell("u-turns", seeds=(3,), seconds=4.0)
+
+
+@pytest.fixture(scope="module")
+def matcher(small_library: Library) -> Matcher:
+    """Return the small library's index."""
+    return Matcher(small_library)
+
+
+def made(library: Library, matcher: Matcher, cell: Cell) -> Stream:
+    """Return the stream of a cell."""
+    return stream(library, matcher, cell, wanted_of(cell))
+
+
+def test_what_is_measured_is_what_is_served(small_library: Library, matcher: Matcher) -> None:
+    """A session of the runtime with the same places and controls sends the same poses."""
+    measured = made(small_library, matcher, CELL)
+    asked = wanted_of(CELL)
+    yaw = np.arctan2(asked.velocity[0, :, 0], asked.velocity[0, :, 1])
+    specs = [CharacterSpec(i, GroundPose((3.0 * i, 0.0, 0.0), float(yaw[i]))) for i in range(2)]
+    runtime = Runtime([small_library], clock=lambda: 0.0)
+    session = runtime.open(Open(specs, seed=3))
+    for i, (velocity, facing) in enumerate(zip(*asked, strict=True)):
+        step = Step(i, 1.0 / 60.0, velocity_xz=velocity, facing_yaw=facing)
+        ((frame, _),) = runtime.advance([(session, step)])
+        assert np.allclose(frame.rotations, measured.pose.rotations[i], atol=1e-5)
+        assert np.allclose(frame.root[:, :3], measured.pose.root_position[i], atol=1e-4)
+
+
+def test_transitions_come_when_forced(small_library: Library, matcher: Matcher) -> None:
+    """Every character jumps every 20 frames, whatever it costs; clip ends may add some."""
+    forced = made(small_library, matcher, replace(CELL, forced_interval_frames=20))
+    frames = len(forced.rows)
+    for character in range(2):
+        mine = np.sort(forced.seams.frame[forced.seams.character == character])
+        assert len(mine) >= frames // 20 - 1
+        assert np.diff(mine).max() <= 21
+    assert forced.since[:25].max() >= 1000
+    assert forced.since[60:].max() <= 20
+
+
+def test_a_lower_rank_is_a_worse_match(small_library: Library, matcher: Matcher) -> None:
+    """The fortieth match is another one than the best, and the stream stays whole."""
+    cell = replace(CELL, forced_interval_frames=20)
+    best, bad = (made(small_library, matcher, replace(cell, match_rank=k)) for k in (1, 40))
+    assert not np.array_equal(best.rows, bad.rows)
+    assert np.isfinite(bad.positions).all()
+
+
+def test_a_perturbed_library_leaves_the_true_one_alone(small_library: Library) -> None:
+    """Roots go 1.2 times as far, labels come three frames late, the original keeps both."""
+    before = small_library.contacts.copy()
+    other = perturbed(small_library, 1.2, 3)
+    assert np.allclose(other.root_position, 1.2 * small_library.root_position)
+    entry = small_library.clips[0]
+    rows = slice(entry.start, entry.start + entry.frames)
+    assert np.array_equal(other.contacts[rows][3:], small_library.contacts[rows][:-3])
+    assert np.array_equal(small_library.contacts, before)
+
+
+def test_the_naive_baseline_jumps_more_and_locks_nothing(
+    small_library: Library, matcher: Matcher
+) -> None:
+    """It searches every frame, without a bias and without foot work."""
+    ours = made(small_library, matcher, CELL)
+    naive = naive_stream(small_library, matcher, CELL, wanted_of(CELL))
+    assert len(naive.seams.frame) > len(ours.seams.frame)
+    assert np.isnan(naive.foot_targets).all()
+    assert np.isfinite(naive.positions).all()
