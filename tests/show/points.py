@@ -39,6 +39,10 @@ class Point:
     passed: bool
     """Whether the figure is within the bar."""
 
+    def __post_init__(self) -> None:
+        # comparisons of numpy give a type of their own, which JSON does not know
+        object.__setattr__(self, "passed", bool(self.passed))
+
 
 Stage = Callable[[], Iterator[Point]]
 
