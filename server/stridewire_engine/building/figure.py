@@ -20,6 +20,7 @@ NEXT = {
 """The joint at the far end of each limb's bone."""
 
 _UPRIGHT = 0.5
+_BALL = 0.7
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,8 @@ class Figure:
     rest_positions: Vectors
     """`(P, 3)` at zero rotations, axes as in the file."""
     toes: dict[str, Vectors]
-    """By side `(T, 3)`: the toe joint, else the foot's end; absent where the file has neither."""
+    """By side `(T, 3)`: the toe joint, else the ball of the foot, at 0.7 of the way to the foot's
+    end; absent where the file has neither."""
     turned_up: bool
     """Whether the file has Z up."""
 
@@ -106,7 +108,7 @@ def _toes(
         if f"{side}Toe" in joints:
             found[side] = positions[:, source.skeleton.index(joints[f"{side}Toe"])]
         elif np.linalg.norm(tip) > 0.0:
-            reach = np.broadcast_to(tip, positions[:, foot].shape)
+            reach = np.broadcast_to(_BALL * tip, positions[:, foot].shape)
             found[side] = positions[:, foot] + quaternion.rotate(rotations[:, foot], reach)
     return found
 

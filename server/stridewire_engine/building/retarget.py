@@ -11,12 +11,20 @@ import numpy as np
 
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion import kinematics, quaternion
-from stridewire.motion.array_types import Quaternions, Vectors
+from stridewire.motion.array_types import Flags, Quaternions, Vectors
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.building.figure import NEXT, SIDES, Figure, direction, see
 from stridewire_engine.building.profiles import Profile
 from stridewire_engine.building.rest_pose import joint_axes
-from stridewire_engine.building.retarget_feet import level_soles, plant, standing, toe_path
+from stridewire_engine.building.retarget_feet import (
+    Misplaced,
+    level_soles,
+    misplaced,
+    moved,
+    plant,
+    standing,
+    toe_path,
+)
 
 _SAME = 1e-3
 _SHORTEST_BONE = 0.02
@@ -76,9 +84,7 @@ def retarget(source: SourceMotion, profile: Profile, frame_rate: float) -> Retar
     stands = {side: standing(feet[side], frame_rate) for side in SIDES}
     for side in SIDES:
         turned = level_soles(turned, side, feet[side], stands[side], frame_rate)
-    hips = _hips(figure, turned, scale)
-    for side in SIDES:
-        turned = plant(hips, turned, side, feet[side], stands[side], frame_rate)
+    hips, turned = _planted(_hips(figure, turned, scale), turned, feet, stands, frame_rate)
     local = kinematics.to_local(REFERENCE, turned)
     notes = ("Z is up",) if figure.turned_up and profile.up is None else ()
     return Retargeted(hips, quaternion.unroll(quaternion.normalize(local)), scale, notes)
@@ -191,6 +197,24 @@ def _fill_trunk(figure: Figure, turned: Quaternions) -> None:
         turned[:, column] = quaternion.slerp(
             turned[:, columns[below]], turned[:, columns[above]], weight
         )
+
+
+def _planted(
+    hips: Vectors,
+    turned: Quaternions,
+    feet: dict[str, Vectors],
+    stands: dict[str, Flags],
+    frame_rate: float,
+) -> tuple[Vectors, Quaternions]:
+    """Return hips and rotations such that planted toes stay where the source's do."""
+
+    def toes() -> dict[str, Misplaced]:
+        return {s: misplaced(hips, turned, s, feet[s], stands[s], frame_rate) for s in SIDES}
+
+    hips = moved(hips, list(toes().values()), frame_rate)
+    for side, toe in toes().items():
+        turned = plant(hips, turned, side, toe)
+    return hips, turned
 
 
 def _hips(figure: Figure, turned: Quaternions, scale: float) -> Vectors:

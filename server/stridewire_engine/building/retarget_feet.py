@@ -4,6 +4,9 @@ Feet differ in length and in the pitch that their joints have on flat ground, so
 rotations alone make a planted toe slide while the heel rises. The legs give by a degree instead.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from stridewire.motion import kinematics, quaternion
@@ -16,7 +19,9 @@ from stridewire_engine.building.figure import Figure
 _STILL = 0.15
 _SLOW = 0.3
 _LOW = 0.05
+_FLAT = 0.025
 _FADE_S = 0.2
+_SLOWLY_S = 1.0
 _ENOUGH_S = 0.3
 _TIPTOE = np.cos(np.deg2rad(35.0))
 _UP = np.array([0.0, 1.0, 0.0])
@@ -24,14 +29,19 @@ _FORWARD = np.array([0.0, 0.0, 1.0])
 
 
 def standing(feet: Vectors, frame_rate: float) -> Flags:
-    """Return `(T,)` whether a foot stands: ankle and toe slower than 0.15 m/s and the toe low.
+    """Return `(T,)` whether a foot stands flat: ankle and toe slower than 0.15 m/s, both low.
 
     Args:
         feet: `(T, 2, 3)` ankle and toe, metres; the ground at any height.
         frame_rate: Frames per second.
     """
     speed = np.linalg.norm(differences(feet, 1.0 / frame_rate), axis=-1).max(axis=-1)
-    return np.asarray((speed < _STILL) & _low(feet[:, 1]))
+    still = (speed < _STILL) & _low(feet[:, 1])
+    if not still.any():
+        return still
+    # a heel that is up stands, too, but not flat
+    ankle = feet[:, 0, 1]
+    return np.asarray(still & (ankle < np.percentile(ankle[still], 10.0) + _FLAT))
 
 
 def toe_path(figure: Figure, turned: Quaternions, side: str, scale: float) -> Vectors:
@@ -96,18 +106,28 @@ def _rows(v: Vectors, count: int) -> Vectors:
     return np.broadcast_to(v, (count, 3))
 
 
-def plant(
+@dataclass(frozen=True)
+class Misplaced:
+    """How a side's toe would have to move to stay where the source's does."""
+
+    error: Vectors
+    """`(T, 3)` metres."""
+    near: Floats
+    """`(T,)` 1 while the toe is planted, 0 away from the ground."""
+
+
+def misplaced(
     hips: Vectors,
     turned: Quaternions,
     side: str,
     feet: Vectors,
     stands: Flags,
     frame_rate: float,
-) -> Quaternions:
-    """Bend a leg so that its toe stays where the source's does; return `turned` with a new leg.
+) -> Misplaced:
+    """Compare a toe with the source's.
 
-    The toe keeps a constant offset from the source's in the foot's heading, the median while the
-    foot stands; away from the ground the leg's own directions hold.
+    The toe keeps an offset from the source's, the median while the foot stands, in the foot's
+    heading, but the same throughout a step, since feet pivot on planted toes.
 
     Args:
         hips: `(T, 3)` in the world, metres.
@@ -117,16 +137,41 @@ def plant(
         stands: `(T,)` whether the whole foot stands.
         frame_rate: Frames per second.
     """
-    thigh, shin, foot, toe = REFERENCE.indices(
-        [side + part for part in ("UpLeg", "Leg", "Foot", "Toe")]
-    )
     positions, _ = kinematics.forward(REFERENCE, hips, kinematics.to_local(REFERENCE, turned))
-    heading = _heading(turned[:, foot])
-    off = positions[:, toe] - feet[:, 1]
+    heading = _heading(turned[:, REFERENCE.index(f"{side}Foot")])
+    off = positions[:, REFERENCE.index(f"{side}Toe")] - feet[:, 1]
     local = quaternion.rotate(quaternion.conjugate(heading), off)
     sure = stands if stands.any() else _low(feet[:, 1])
     kept = quaternion.rotate(heading, _rows(np.median(local[sure], axis=0), len(off)))
-    target = positions[:, foot] + (kept - off) * _near_ground(feet[:, 1], frame_rate)[:, None]
+    planted = _planted(feet[:, 1], frame_rate)
+    return Misplaced(_held(kept, planted, frame_rate) - off, _near(planted, frame_rate))
+
+
+def moved(hips: Vectors, sides: Sequence[Misplaced], frame_rate: float) -> Vectors:
+    """Return the hips moved by what both legs ask for over a second while their toes are planted.
+
+    Thighs and shins in other proportions put the feet of bent legs elsewhere; in a crouch, moving
+    the hips serves both legs better than bending each. Steps are too quick for it to show.
+    """
+    weight = np.sum([side.near for side in sides], axis=0)[:, None]
+    asked = np.sum([side.near[:, None] * side.error for side in sides], axis=0)
+    return hips + _smoothed(asked / np.maximum(weight, 1.0), frame_rate, _SLOWLY_S)
+
+
+def plant(hips: Vectors, turned: Quaternions, side: str, toe: Misplaced) -> Quaternions:
+    """Bend a leg so that its toe stays where the source's does; return `turned` with a new leg.
+
+    Away from the ground the leg's own directions hold.
+
+    Args:
+        hips: `(T, 3)` in the world, metres.
+        turned: `(T, 22, 4)` rotations in the world.
+        side: `Left` or `Right`.
+        toe: How far it is off with these hips.
+    """
+    thigh, shin, foot = REFERENCE.indices([side + part for part in ("UpLeg", "Leg", "Foot")])
+    positions, _ = kinematics.forward(REFERENCE, hips, kinematics.to_local(REFERENCE, turned))
+    target = positions[:, foot] + toe.error * toe.near[:, None]
     limb = two_bone_ik(
         positions[:, thigh],
         positions[:, shin],
@@ -146,15 +191,37 @@ def _low(toe: Vectors) -> Flags:
     return np.asarray(toe[:, 1] < np.percentile(toe[:, 1], 10.0) + _LOW)
 
 
-def _near_ground(toe: Vectors, frame_rate: float) -> Floats:
-    """Return `(T,)` 1 while the toe is planted, fading to 0 over 0.2 s before and after."""
+def _planted(toe: Vectors, frame_rate: float) -> Flags:
     speed = np.linalg.norm(differences(toe, 1.0 / frame_rate), axis=-1)
-    planted = _low(toe) & (speed < _SLOW)
+    return np.asarray(_low(toe) & (speed < _SLOW))
+
+
+def _held(values: Vectors, planted: Flags, frame_rate: float) -> Vectors:
+    """Replace values `(T, 3)` by their mean over the nearest planted span, smoothly in between."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], planted, [False]]).astype(np.int8)))
+    begins, ends = edges[::2], edges[1::2]
+    if not len(begins):
+        return values
+    means = np.array([values[a:b].mean(axis=0) for a, b in zip(begins, ends, strict=True)])
+    borders = 0.5 * (ends[:-1] + begins[1:])
+    nearest = means[np.searchsorted(borders, np.arange(len(values)))]
+    return _smoothed(nearest, frame_rate)
+
+
+def _near(planted: Flags, frame_rate: float) -> Floats:
+    """Return `(T,)` 1 while the toe is planted, fading to 0 over 0.2 s before and after."""
     fade = max(1, round(_FADE_S * frame_rate))
-    window = np.hanning(2 * fade + 1)
-    held = np.convolve(planted, np.ones(2 * fade + 1), "same")[: len(toe)] > 0.5
-    padded = np.pad(held.astype(np.float64), fade, mode="edge")
-    return np.asarray(np.convolve(padded, window / window.sum(), "valid"))
+    held = np.convolve(planted, np.ones(2 * fade + 1))[fade:-fade] > 0.5
+    return _smoothed(held[:, None].astype(np.float64), frame_rate)[:, 0]
+
+
+def _smoothed(values: Floats, frame_rate: float, seconds: float = _FADE_S) -> Floats:
+    """Average `(T, C)` over some seconds to both sides, the ends held."""
+    fade = max(1, round(seconds * frame_rate))
+    window = np.hanning(2 * fade + 3)[1:-1]
+    padded = np.pad(values, ((fade, fade), (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * fade + 1, axis=0)
+    return np.asarray(windows @ (window / window.sum()))
 
 
 def _heading(foot: Quaternions) -> Quaternions:
