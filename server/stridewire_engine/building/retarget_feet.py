@@ -36,7 +36,7 @@ def standing(feet: Vectors, frame_rate: float) -> Flags:
         frame_rate: Frames per second.
     """
     speed = np.linalg.norm(differences(feet, 1.0 / frame_rate), axis=-1).max(axis=-1)
-    still = (speed < _STILL) & _low(feet[:, 1])
+    still: Flags = np.asarray((speed < _STILL) & _low(feet[:, 1]))
     if not still.any():
         return still
     # a heel that is up stands, too, but not flat
