@@ -63,17 +63,18 @@ def probe_queries(matcher: Matcher, others: Floats, rng: np.random.Generator) ->
 
 def prove(matcher: Matcher, queries: Floats, rng: np.random.Generator) -> list[Cell]:
     """Measure every kind of weights for all rows and for each tag whose rows are not scanned."""
-    return [*_cells(matcher, queries, rng)]
+    return [_measure(matcher, trial) for trial in _trials(matcher, queries, rng)]
 
 
 def tune_probes(matcher: Matcher, queries: Floats, rng: np.random.Generator) -> list[Cell]:
     """Set the fewest lists to look into for which every cell is good enough; return the cells."""
-    lists = matcher.candidates.lists
-    seed = int(rng.integers(2**31))
+    trials = [*_trials(matcher, queries, rng)]
+    cells: list[Cell] = []
     for probes in _PROBES:
-        if lists is not None:
-            matcher.candidates.look_into(probes)
-        cells = prove(matcher, queries, np.random.default_rng(seed))
+        matcher.candidates.look_into(probes)
+        for among in {id(trial.among): trial.among for trial in trials}.values():
+            among.look_into(probes)
+        cells = [_measure(matcher, trial) for trial in trials]
         if all(c.recall >= LEAST_RECALL and c.cost_ratio <= MOST_COST_RATIO for c in cells):
             break
     return cells
@@ -96,13 +97,29 @@ def report(matcher: Matcher, cells: list[Cell]) -> dict[str, Any]:
     }
 
 
-def _cells(matcher: Matcher, queries: Floats, rng: np.random.Generator) -> Iterator[Cell]:
+@dataclass(frozen=True)
+class _Trial:
+    """Queries of one kind under one filter, and what there is to find."""
+
+    name: str
+    among: CandidateSet
+    queries: Floats
+    weights: Floats
+    best_rows: Indices
+    best_costs: Floats
+
+
+def _trials(matcher: Matcher, queries: Floats, rng: np.random.Generator) -> Iterator[_Trial]:
     for among in (matcher.candidates.everything, *_large_tags(matcher)):
         if among.is_exact:
             continue
-        reference = ExactIndex(matcher.schema, matcher.library.features, matcher.bias, among.rows)
+        features = matcher.library.features
+        reference = ExactIndex(matcher.schema, features, matcher.bias, among.rows)
         for name, weights in _weightings(matcher, len(queries), rng):
-            yield _measure(matcher, among, reference, name, queries, weights)
+            augmented = augment_queries(matcher.schema, queries, weights)
+            nearest = reference.search(augmented, _AMONG)
+            rows, costs = _best(matcher, queries, weights, nearest)
+            yield _Trial(name, among, queries, weights, rows, costs)
 
 
 def _large_tags(matcher: Matcher) -> Iterator[CandidateSet]:
@@ -123,22 +140,14 @@ def _weightings(
     yield "one-zero", preset * (np.arange(preset.shape[1]) != left_out)
 
 
-def _measure(
-    matcher: Matcher,
-    among: CandidateSet,
-    reference: ExactIndex,
-    name: str,
-    queries: Floats,
-    weights: Floats,
-) -> Cell:
-    augmented = augment_queries(matcher.schema, queries, weights)
-    best_rows, best = _best(matcher, queries, weights, reference.search(augmented, _AMONG))
-    nothing = np.full((len(queries), 1), -1)
-    found = matcher.search(queries, weights, nothing, candidates=among)
+def _measure(matcher: Matcher, trial: _Trial) -> Cell:
+    nothing = np.full((len(trial.queries), 1), -1)
+    found = matcher.search(trial.queries, trial.weights, nothing, candidates=trial.among)
+    costs, best = found.costs[:, 0], trial.best_costs
     # an equal cost is as good a find as the very row
-    hit = (found.rows[:, 0] == best_rows) | (found.costs[:, 0] <= best * (1.0 + 1e-9))
-    ratio = float(found.costs[:, 0].sum() / max(best.sum(), 1e-12))
-    return Cell(name, among.text, len(among), float(hit.mean()), ratio)
+    hit = (found.rows[:, 0] == trial.best_rows) | (costs <= best * (1.0 + 1e-9))
+    ratio = float(costs.sum() / max(best.sum(), 1e-12))
+    return Cell(trial.name, trial.among.text, len(trial.among), float(hit.mean()), ratio)
 
 
 def _best(
