@@ -11,12 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
+from stridewire.formats.number_block import numbers
 from stridewire.formats.source_motion import FormatError, SourceMotion
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Floats, Quaternions, Vectors
 from stridewire.motion.skeleton import Skeleton, SkeletonError
 
 _INCH = 0.0254
+_LARGEST = 1e9
 _ROOT = "root"
 _ROOT_ORDER = ("tx", "ty", "tz", "rx", "ry", "rz")
 
@@ -118,7 +120,8 @@ def _lines(path: Path) -> list[str]:
     raw = path.read_bytes()
     if b"\0" in raw:
         raise FormatError(path, "holds zero bytes; expected a text file")
-    return re.split(r"\r*\n|\r", raw.decode("utf-8-sig", errors="replace"))
+    text = raw.decode("utf-8-sig", errors="replace")
+    return re.split(r"\r*\n|\r", text) if "\r" in text else text.split("\n")
 
 
 def _number(path: Path, text: str, what: str, line: int | None = None) -> float:
@@ -126,7 +129,7 @@ def _number(path: Path, text: str, what: str, line: int | None = None) -> float:
         value = float(text)
     except ValueError:
         value = np.nan
-    if not abs(value) < 1e9:
+    if not abs(value) < _LARGEST:
         raise FormatError(path, f"{what}: {text[:20]!r} is no number", line)
     return value
 
@@ -249,69 +252,87 @@ def _figure(
 
 def _rows(path: Path, figure: AcclaimSkeleton) -> tuple[dict[str, Floats], list[str]]:
     """Return the values of each bone `(T, degrees)`; bones that a frame lacks keep their last."""
-    lengths = {
-        name: len(degrees)
-        for name, degrees in zip(figure.skeleton.names, figure.degrees, strict=True)
-    }
+    lines = [
+        (number, line)
+        for number, line in enumerate(_lines(path), start=1)
+        if line and not line.isspace() and line.lstrip()[0] not in "#:"
+    ]
+    counts = zip(figure.skeleton.names, map(len, figure.degrees), strict=True)
+    lengths = {name: count for name, count in counts if count}
+    regular = _regular_rows([line for _, line in lines], lengths)
+    return (regular, []) if regular is not None else _irregular_rows(path, lines, lengths)
+
+
+def _regular_rows(lines: list[str], lengths: dict[str, int]) -> dict[str, Floats] | None:
+    """Read column by column where all frames name all bones in one order; None where not."""
+    size = len(lengths) + 1
+    if not lines or len(lines) % size or not all(line.strip().isdigit() for line in lines[::size]):
+        return None
+    rows: dict[str, Floats] = {}
+    for at in range(1, size):
+        name = lines[at].split(None, 1)[0]
+        head = f"{name} "
+        column = lines[at::size]
+        if name not in lengths or not all(line.startswith(head) for line in column):
+            return None
+        values = numbers("".join(line[len(name) :] for line in column))
+        if values is None or len(values) != len(column) * lengths[name]:
+            return None
+        if not np.all(np.abs(values) < _LARGEST):
+            return None
+        rows[name] = values.reshape(-1, lengths[name])
+    return rows
+
+
+def _irregular_rows(
+    path: Path, lines: list[tuple[int, str]], lengths: dict[str, int]
+) -> tuple[dict[str, Floats], list[str]]:
+    """Read line by line: bones may be missing from frames, and faults are named with their line."""
     canonical = {name.lower(): name for name in lengths}
-    values: dict[str, list[str]] = {name: [] for name in lengths}
-    frames = 0
-    notes: list[str] = []
-    for number, line in enumerate(_lines(path), start=1):
+    values: dict[str, list[list[float]]] = {name: [] for name in lengths}
+    at: dict[str, list[int]] = {name: [] for name in lengths}
+    frame = -1
+    for number, line in lines:
         words = line.split()
-        if not words or words[0][0] in "#:":
-            continue
         if len(words) == 1 and words[0].isdigit():
-            frames += 1
+            frame += 1
             continue
         name = canonical.get(words[0].lower())
-        if name is None or frames == 0:
-            what = "a bone that its ASF lacks" if frames else "expected a frame number first"
+        if name is None or frame < 0:
+            what = "a bone that its ASF lacks" if frame >= 0 else "expected a frame number first"
             raise FormatError(path, f"{words[0][:30]!r}: {what}", number)
         if len(words) - 1 != lengths[name]:
             raise FormatError(
                 path, f"{name} has {len(words) - 1} values; its ASF has {lengths[name]}", number
             )
-        column = values[name]
-        if len(column) // max(lengths[name], 1) >= frames:
-            raise FormatError(path, f"{name} occurs twice in frame {frames}", number)
-        column += words[1:]
-    if frames == 0:
+        if at[name] and at[name][-1] == frame:
+            raise FormatError(path, f"{name} occurs twice in frame {frame + 1}", number)
+        values[name].append([_number(path, word, name, number) for word in words[1:]])
+        at[name].append(frame)
+    if frame < 0:
         raise FormatError(path, "holds no frame; expected an AMC motion")
-    return _columns(path, values, lengths, frames, notes), notes
+    return _held(path, values, at, frame + 1)
 
 
-def _columns(
-    path: Path,
-    values: dict[str, list[str]],
-    lengths: dict[str, int],
-    frames: int,
-    notes: list[str],
-) -> dict[str, Floats]:
-    columns: dict[str, Floats] = {}
-    absent = []
-    for name, words in values.items():
-        if lengths[name] == 0:
-            continue
-        if not words:
-            absent.append(name)
-            columns[name] = np.zeros((frames, lengths[name]))
-            continue
-        try:
-            rows = np.array(words, np.float64).reshape(-1, lengths[name])
-        except ValueError:
-            raise FormatError(path, f"{name} holds something that is no number") from None
-        if not np.all(np.abs(rows) < 1e9):
-            raise FormatError(path, f"{name} holds a number that is not finite")
-        if len(rows) < frames:
-            notes.append(f"{name} is given in {len(rows)} of {frames} frames; its last value holds")
-            rows = np.concatenate([rows, np.repeat(rows[-1:], frames - len(rows), axis=0)])
-        columns[name] = rows
-    if _ROOT in absent:
+def _held(
+    path: Path, values: dict[str, list[list[float]]], at: dict[str, list[int]], frames: int
+) -> tuple[dict[str, Floats], list[str]]:
+    """Let values hold over frames that lack them."""
+    if not at.get(_ROOT):
         raise FormatError(path, "the root has no values; expected them in every frame")
+    rows, notes = {}, []
+    for name, given in at.items():
+        if given:
+            latest = np.searchsorted(given, np.arange(frames), side="right") - 1
+            rows[name] = np.array(values[name])[np.maximum(latest, 0)]
+            if len(given) < frames:
+                notes.append(
+                    f"{name} is given in {len(given)} of {frames} frames and holds between"
+                )
+    absent = [name for name, given in at.items() if not given]
     if absent:
         notes.append(f"bones without values rest: {', '.join(absent)}")
-    return columns
+    return rows, notes
 
 
 def _motion(

@@ -4,7 +4,6 @@ The hierarchy is read statement by statement, the frames as one block of numbers
 """
 
 import re
-import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
@@ -12,6 +11,7 @@ from typing import NoReturn
 import numpy as np
 
 from stridewire.formats.frame_rates import named_rate
+from stridewire.formats.number_block import numbers
 from stridewire.formats.source_motion import FormatError, SourceMotion
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Floats, Quaternions, Vectors
@@ -210,12 +210,9 @@ def _rate(path: Path, text: str, line: int) -> float:
 
 
 def _rows(path: Path, text: str, first_line: int, channels: int) -> tuple[Floats, list[str]]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", DeprecationWarning)
-        try:
-            values = np.fromstring(text, dtype=np.float64, sep=" ")
-        except (DeprecationWarning, ValueError):
-            _raise_bad_number(path, text, first_line)
+    values = numbers(text)
+    if values is None:
+        _raise_bad_number(path, text, first_line)
     notes = []
     if len(values) % channels:
         # a shifted row would turn all later ones to nonsense, so only the last may be incomplete

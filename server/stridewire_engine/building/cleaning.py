@@ -95,11 +95,13 @@ def mend_spikes(source: SourceMotion, frame_rate: float) -> tuple[SourceMotion, 
     narrow = max(_SPIKE, _SPIKE_SPEED / frame_rate)
     mended = np.zeros(rotations.shape[:2], bool)
     widest = max(_WIDEST_SPIKE, round(_WIDEST_FLIP_S * frame_rate))
+    steps = _steps(rotations)
     for width in range(1, min(widest, len(rotations) - 2) + 1):
         threshold = narrow if width <= _WIDEST_SPIKE else _FLIP
         before, after = rotations[: -width - 1], rotations[width + 1 :]
-        steps = _steps(rotations)
         jump = np.minimum(steps[: len(before)], steps[width:])
+        if not (jump > threshold).any():
+            continue
         spike = (jump > threshold) & (_angle(before, after) < 0.35 * jump)
         for frame, joint in np.argwhere(spike):
             weight = np.arange(1, width + 1) / (width + 1)
@@ -108,7 +110,8 @@ def mend_spikes(source: SourceMotion, frame_rate: float) -> tuple[SourceMotion, 
                 np.broadcast_to(a, (width, 4)), np.broadcast_to(b, (width, 4)), weight
             )
             mended[frame + 1 : frame + width + 1, joint] = True
-    left = _steps(rotations) > _FLIP
+        steps = _steps(rotations) if spike.any() else steps
+    left = steps > _FLIP
     notes = [
         f"{int(where.any(axis=-1).sum())} {what}, the first at "
         f"{np.argwhere(where)[0][0] / frame_rate:.2f} s in "

@@ -104,6 +104,16 @@ def test_bones_without_values_rest(tmp_path: Path) -> None:
     assert motion.notes == ("bones without values rest: shin",)
 
 
+def test_values_hold_over_frames_that_lack_them(tmp_path: Path) -> None:
+    """A bone that one frame does not name keeps its last values there, and a note says so."""
+    third = "3\nroot 1 2 5 0 90 0\nthigh 0 0 0\nshin 70\n"
+    amc = AMC.replace("shin 45\n", "") + third
+    motion = read_acclaim(write(tmp_path, amc=amc))
+    whole = read_acclaim(write(tmp_path, amc=AMC.replace("shin 45", "shin 40") + third))
+    np.testing.assert_array_equal(motion.rotations, whole.rotations)
+    assert motion.notes == ("shin is given in 2 of 3 frames and holds between",)
+
+
 def test_line_ends_and_case_do_not_matter(tmp_path: Path) -> None:
     """CRLF mixes read like LF."""
     path = write(tmp_path)
@@ -135,8 +145,8 @@ def test_radians(tmp_path: Path) -> None:
         (("thigh shin", "thigh foot"), None, "'foot', which has no bone"),
         (None, ("shin 40", "shin 40 50"), "shin has 2 values; its ASF has 1"),
         (None, ("shin 40", "toe 40"), "'toe': a bone that its ASF lacks"),
-        (None, ("shin 40", "shin nan"), "not finite"),
-        (None, ("shin 40", "shin x"), "no number"),
+        (None, ("shin 40", "shin nan"), "'nan' is no number"),
+        (None, ("shin 40", "shin x"), "'x' is no number"),
         (None, ("1\nroot", "root"), "expected a frame number first"),
         (None, ("shin 40", "thigh 1 2 3"), "occurs twice"),
         (None, (AMC, ":DEGREES\n"), "holds no frame"),
