@@ -1,6 +1,6 @@
 """A source motion seen as a human: parts by name, Y up, bones measured from the motion."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -20,7 +20,6 @@ NEXT = {
 """The joint at the far end of each limb's bone."""
 
 _UPRIGHT = 0.5
-_BALL = 0.7
 
 
 @dataclass(frozen=True)
@@ -36,8 +35,8 @@ class Figure:
     rest_positions: Vectors
     """`(P, 3)` at zero rotations, axes as in the file."""
     toes: dict[str, Vectors]
-    """By side `(T, 3)`: the toe joint, else the ball of the foot, at 0.7 of the way to the foot's
-    end; absent where the file has neither."""
+    """By side `(T, 3)`: the toe joint, else a point on the way to the foot's end; absent where the
+    file has neither."""
     turned_up: bool
     """Whether the file has Z up."""
 
@@ -76,15 +75,10 @@ def see(source: SourceMotion, joints: dict[str, str], up: str | None = None) -> 
     parts = tuple(part for part in REFERENCE.names if part in joints)
     columns = source.skeleton.indices([joints[part] for part in parts])
     positions, rotations = source.global_poses()
-    toes = _toes(source, joints, positions, rotations)
     figure = Figure(
-        parts,
-        positions[:, columns],
-        rotations[:, columns],
-        _rest(source)[columns],
-        toes,
-        turned_up=False,
+        parts, positions[:, columns], rotations[:, columns], _rest(source)[columns], {}, False
     )
+    figure = replace(figure, toes=_toes(source, joints, positions, figure))
     if up == "Y" or (up is None and not _is_z_up(figure)):
         return figure
     turn = quaternion.from_axis_angle((1.0, 0.0, 0.0), np.array(-0.5 * np.pi))
@@ -93,24 +87,36 @@ def see(source: SourceMotion, joints: dict[str, str], up: str | None = None) -> 
         _turn(turn, figure.positions),
         quaternion.multiply(turn, figure.rotations),
         figure.rest_positions,
-        {side: _turn(turn, toe) for side, toe in toes.items()},
+        {side: _turn(turn, toe) for side, toe in figure.toes.items()},
         turned_up=True,
     )
 
 
 def _toes(
-    source: SourceMotion, joints: dict[str, str], positions: Vectors, rotations: Quaternions
+    source: SourceMotion, joints: dict[str, str], positions: Vectors, figure: Figure
 ) -> dict[str, Vectors]:
+    """Return toe joints, or points as far along the feet as the reference's toes, by side."""
     found = {}
+    unit = leg_length() / max(figure.length("UpLeg", "Leg", "Foot"), 1e-9)
+    reference = float(np.linalg.norm(REFERENCE.offsets[REFERENCE.index("LeftToe")])) / unit
     for side in SIDES:
-        foot = source.skeleton.index(joints[f"{side}Foot"])
-        tip = source.tips.get(foot, np.zeros(3))
+        foot = f"{side}Foot"
+        tip = source.tips.get(source.skeleton.index(joints[foot]), np.zeros(3))
+        length = float(np.linalg.norm(tip))
         if f"{side}Toe" in joints:
             found[side] = positions[:, source.skeleton.index(joints[f"{side}Toe"])]
-        elif np.linalg.norm(tip) > 0.0:
-            reach = np.broadcast_to(_BALL * tip, positions[:, foot].shape)
-            found[side] = positions[:, foot] + quaternion.rotate(rotations[:, foot], reach)
+        elif length > 0.0:
+            along = tip * min(1.0, reference / length)
+            turned = figure.rotations[:, figure.index(foot)]
+            reach = quaternion.rotate(turned, np.broadcast_to(along, (len(turned), 3)))
+            found[side] = figure.at(foot) + reach
     return found
+
+
+def leg_length() -> float:
+    """Return thigh and shin of the reference skeleton; metres."""
+    lower = REFERENCE.indices([side + part for side in SIDES for part in ("Leg", "Foot")])
+    return float(np.linalg.norm(REFERENCE.offsets[lower], axis=-1).sum() / 2.0)
 
 
 def _rest(source: SourceMotion) -> Vectors:

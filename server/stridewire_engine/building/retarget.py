@@ -13,7 +13,7 @@ from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion import kinematics, quaternion
 from stridewire.motion.array_types import Flags, Quaternions, Vectors
 from stridewire.motion.skeleton import REFERENCE
-from stridewire_engine.building.figure import NEXT, SIDES, Figure, direction, see
+from stridewire_engine.building.figure import NEXT, SIDES, Figure, direction, leg_length, see
 from stridewire_engine.building.profiles import Profile
 from stridewire_engine.building.rest_pose import joint_axes
 from stridewire_engine.building.retarget_feet import (
@@ -127,22 +127,14 @@ def fits(source: SourceMotion, profile: Profile) -> bool:
     return True
 
 
-def leg_length() -> float:
-    """Return thigh and shin of the reference skeleton; metres."""
-    return _leg_length(REFERENCE.offsets)
-
-
-def _leg_length(offsets: Vectors) -> float:
-    lower = REFERENCE.indices([side + part for side in SIDES for part in ("Leg", "Foot")])
-    return float(np.linalg.norm(offsets[lower], axis=-1).sum() / 2.0)
-
-
 def _reference_scale(source: SourceMotion) -> float | None:
     """Return metres per unit where the file is on the reference skeleton, else None."""
     skeleton = source.skeleton
     if skeleton.names != REFERENCE.names or skeleton.parents != REFERENCE.parents:
         return None
-    scale = leg_length() / max(_leg_length(skeleton.offsets), 1e-9)
+    lower = REFERENCE.indices([side + part for side in SIDES for part in ("Leg", "Foot")])
+    leg = np.linalg.norm(skeleton.offsets[lower], axis=-1).sum() / 2.0
+    scale = leg_length() / max(float(leg), 1e-9)
     same = np.abs(skeleton.offsets[1:] * scale - REFERENCE.offsets[1:]).max() < _SAME
     return scale if same and source.translations is None else None
 
