@@ -15,7 +15,7 @@ from stridewire_engine.matching.schema import Schema
 
 EXACT_ROWS = 20_000
 """Sets up to this size are scanned row by row; larger ones look into inverted lists."""
-_OWN_LISTS_SHARE = 0.5
+_OWN_LISTS_SHARE = 0.8
 """Larger sets below this share of all rows get lists of their own."""
 _CACHED_SETS = 64
 
@@ -113,7 +113,7 @@ class Candidates:
             rows = np.flatnonzero(satisfied & library.startable)
             if not len(rows):
                 raise InvalidRequestError.of(Violation(path, _nothing(library, text, satisfied)))
-            self._cache[text] = self._make(text, satisfied, rows)
+            self._cache[text] = self.of_rows(text, satisfied, rows)
             if len(self._cache) > _CACHED_SETS:
                 self._cache.popitem(last=False)
         self._cache.move_to_end(text)
@@ -124,7 +124,14 @@ class Candidates:
         for among in (self.everything, *self._cache.values()):
             among.look_into(probes)
 
-    def _make(self, text: str, satisfied: Flags, rows: Indices) -> CandidateSet:
+    def of_rows(self, text: str, satisfied: Flags, rows: Indices) -> CandidateSet:
+        """Index some rows.
+
+        Args:
+            text: What the set is called.
+            satisfied: `(F,)` rows that belong to it, startable or not.
+            rows: Those that may be chosen, ascending.
+        """
         if self.lists is None or len(rows) <= EXACT_ROWS:
             features = self._library.features
             exact = ExactIndex(self._schema, features, self._bias, rows)

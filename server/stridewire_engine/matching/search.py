@@ -92,9 +92,13 @@ class Matcher:
             candidates: Rows that may be chosen; None for all.
         """
         among = candidates or self.candidates.everything
-        found = self._search(queries, weights, excluded, k, among, k - 1 + _CANDIDATES)
-        ask = 4 * (k - 1 + _CANDIDATES)
+        ask = k - 1 + _CANDIDATES
+        found = self._search(queries, weights, excluded, k, among, ask)
+        exhaustive = False
         while len(lacking := np.flatnonzero(~np.isfinite(found.costs[:, -1]))):
+            if exhaustive and ask >= len(among):
+                break
+            ask *= 4
             again = self._search(
                 queries[lacking],
                 weights[lacking],
@@ -102,12 +106,10 @@ class Matcher:
                 k,
                 among,
                 ask,
-                exhaustive=True,
+                exhaustive=exhaustive,
             )
             found.put(lacking, again)
-            if ask >= len(among):
-                break
-            ask *= 8
+            exhaustive = True
         return found
 
     def costs(self, queries: Floats, weights: Floats, rows: Indices) -> Floats:
