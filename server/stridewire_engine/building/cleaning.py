@@ -29,6 +29,7 @@ _SHORTEST_LAP_S, _LONGEST_LAP_S = 0.4, 20.0
 _LAP_GAP = 0.02
 _LAP_KICK = 1.5
 _STILL = 0.15
+_STEP = 0.1
 _FLOOR_PERCENTILE = 25.0
 _TOES = ("LeftToe", "RightToe")
 
@@ -168,15 +169,16 @@ def _angle(a: Quaternions, b: Quaternions) -> Floats:
 def floor_height(positions: Vectors) -> float:
     """Return the height of the ground, metres, as planted toes show it.
 
-    A low percentile of the toes' heights while they stand still: the minimum would follow noise and
-    toes pressed into the ground, the median steps onto boxes.
+    A low percentile of the toes' heights while they are slow and low: the minimum would follow
+    noise and toes pressed into the ground, the median steps onto boxes. In a run toes are never
+    still, so the slowest tenth counts there.
 
     Args:
         positions: `(T, 22, 3)` at 60 frames/s on the reference skeleton.
     """
     toes = REFERENCE.indices(_TOES)
     height: Floats = positions[:, toes, 1] - rest_heights(REFERENCE, toes)
-    still = np.linalg.norm(differences(positions[:, toes], 1.0 / FRAME_RATE), axis=-1) < _STILL
-    if still.sum() < FRAME_RATE * 0.5:
-        return float(np.percentile(height, 5.0))
-    return float(np.percentile(height[still], _FLOOR_PERCENTILE))
+    speed = np.linalg.norm(differences(positions[:, toes], 1.0 / FRAME_RATE), axis=-1)
+    slow = speed <= max(_STILL, float(np.percentile(speed, 10.0)))
+    low = height <= np.percentile(height[slow], 10.0) + _STEP
+    return float(np.percentile(height[slow & low], _FLOOR_PERCENTILE))

@@ -44,6 +44,8 @@ class ClipQuality:
     name: str
     source: str
     seconds: float
+    speed: float
+    """Mean speed over the ground; m/s."""
     noise: float
     """Median jerk of the hands and feet in the character's frame; m/s^3."""
     floor_cm: float
@@ -59,11 +61,12 @@ class ClipQuality:
     def problems(self) -> tuple[str, ...]:
         """What a person should look at."""
         found = []
-        if self.noise > 400.0:
+        # fast motion jerks and creeps without being noisy
+        if self.noise > 250.0 + 120.0 * self.speed:
             found.append("noisy")
         if abs(self.floor_cm) > 2.0:
             found.append("off the ground")
-        if self.sliding_cm_s > 10.0:
+        if self.sliding_cm_s > max(10.0, 6.0 * self.speed):
             found.append("planted feet slide")
         if self.contact_share < 0.05:
             found.append("feet never planted (in place, in the air, or wrong units)")
@@ -124,6 +127,7 @@ def clip_quality(clip: Clip) -> ClipQuality:
         name=clip.name,
         source=clip.source,
         seconds=clip.seconds,
+        speed=float(np.linalg.norm(differences(pose.root_position, dt), axis=-1).mean()),
         noise=float(np.median(np.linalg.norm(jerk, axis=-1))),
         floor_cm=100.0 * float(np.median(height[planted])) if some else 0.0,
         sliding_cm_s=100.0 * float(speed[planted].mean()) if some else 0.0,
