@@ -94,22 +94,12 @@ class Matcher:
         among = candidates or self.candidates.everything
         ask = k - 1 + _CANDIDATES
         found = self._search(queries, weights, excluded, k, among, ask)
-        exhaustive = False
-        while len(lacking := np.flatnonzero(~np.isfinite(found.costs[:, -1]))):
-            if exhaustive and ask >= len(among):
+        for more, exhaustive in ((4 * ask, False), (16 * ask, True), (len(among), True)):
+            lacking = np.flatnonzero(~np.isfinite(found.costs[:, -1]))
+            if not len(lacking):
                 break
-            ask *= 4
-            again = self._search(
-                queries[lacking],
-                weights[lacking],
-                excluded[lacking],
-                k,
-                among,
-                ask,
-                exhaustive=exhaustive,
-            )
-            found.put(lacking, again)
-            exhaustive = True
+            rest = queries[lacking], weights[lacking], excluded[lacking]
+            found.put(lacking, self._search(*rest, k, among, more, exhaustive=exhaustive))
         return found
 
     def costs(self, queries: Floats, weights: Floats, rows: Indices) -> Floats:
