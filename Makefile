@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 STRIDEWIRE_DATA ?= $(abspath ../shared/data)
 export STRIDEWIRE_DATA PROTO_VENV
 
-.PHONY: demo test lint proto show-spine show-import image clean help
+.PHONY: demo test lint proto show-spine show-search show-import image clean help
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -33,6 +33,9 @@ proto: $(PROTO_VENV)/.ready ## make the stubs anew after a change in proto/
 
 show-spine: $(VENV)/.dev ## check what the service claims, point by point
 	$(BIN)/python tests/show/spine.py $(SHOW)
+
+show-search: $(VENV)/.dev ## check what the search claims, up to a million frames
+	$(BIN)/python tests/show/search.py $(SHOW)
 
 show-import: $(VENV)/.dev ## check what import claims, over the whole capture
 	$(BIN)/python tests/show/importing.py $(SHOW)
