@@ -6,7 +6,7 @@ import numpy as np
 
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion import kinematics, quaternion
-from stridewire.motion.array_types import Floats, Quaternions, Vectors
+from stridewire.motion.array_types import Flags, Floats, Quaternions, Vectors
 from stridewire.motion.clip import Clip, differences
 from stridewire.motion.contacts import detect_contacts, rest_heights
 from stridewire.motion.resample import resample_rotations, resample_values
@@ -112,18 +112,20 @@ def mend_spikes(source: SourceMotion, frame_rate: float) -> tuple[SourceMotion, 
             )
             mended[frame + 1 : frame + width + 1, joint] = True
         steps = _steps(rotations) if spike.any() else steps
-    left = steps > _FLIP
-    notes = [
-        f"{int(where.any(axis=-1).sum())} {what}, the first at "
-        f"{np.argwhere(where)[0][0] / frame_rate:.2f} s in "
-        f"{source.skeleton.names[np.argwhere(where)[0][1]]}"
-        for what, where in (
-            ("frame(s) with spikes were mended", mended),
-            ("jump(s) of a joint by more than 90 degrees are left", left),
-        )
-        if where.any()
-    ]
+    notes = _places(source, mended, "frame(s) with spikes were mended", frame_rate)
+    left = "jump(s) of a joint by more than 90 degrees are left"
+    notes += _places(source, steps > _FLIP, left, frame_rate)
     return (replace(source, rotations=rotations) if mended.any() else source), notes
+
+
+def _places(source: SourceMotion, where: Flags, what: str, frame_rate: float) -> list[str]:
+    """Say how many frames of `(T, J)` flags there are and where the first is."""
+    if not where.any():
+        return []
+    frame, joint = np.argwhere(where)[0]
+    count = int(where.any(axis=-1).sum())
+    first = f"{frame / frame_rate:.2f} s in {source.skeleton.names[joint]}"
+    return [f"{count} {what}, the first at {first}"]
 
 
 def gaps(source: SourceMotion, frame_rate: float) -> list[str]:

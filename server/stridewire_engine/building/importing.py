@@ -135,17 +135,13 @@ def import_file(
     sidecar = Sidecars().of(path) if sidecar is None else sidecar
     source = read_motion(path)
     rate, notes = _frame_rate(source, frame_rate, sidecar)
-    cut = leading_pose(source)
-    if cut:
-        source = source.after(cut)
-        notes.append(f"{cut} frame(s) before the motion begins were cut")
+    source, cleaned = _cleaned(source, rate)
+    notes += cleaned
     if len(source) < _SHORTEST_S * rate:
         raise RefusedError(
             f"{path}: {len(source)} frames at {rate:g} per second; expected at least "
             f"{_SHORTEST_S:g} s"
         )
-    source, mended = mend_spikes(source, rate)
-    notes += [*mended, *gaps(source, rate)]
     profile = find_profile(source, profiles or shipped_profiles())
     motion = retarget(source, profile, rate)
     floor = 0.0 if motion.unchanged else None
@@ -154,6 +150,14 @@ def import_file(
     tagged = find_loop(tag(clip, f"{path.stem} {sidecar.words}"))
     notes += ["it loops"] if tagged.loops else []
     return Outcome(path, tagged, notes=(*source.notes, *notes), profile=profile.name)
+
+
+def _cleaned(source: SourceMotion, frame_rate: float) -> tuple[SourceMotion, list[str]]:
+    """Cut what lies before the motion, mend it, and say so."""
+    cut = leading_pose(source)
+    notes = [f"{cut} frame(s) before the motion begins were cut"] if cut else []
+    source, mended = mend_spikes(source.after(cut), frame_rate)
+    return source, [*notes, *mended, *gaps(source, frame_rate)]
 
 
 def find_profile(source: SourceMotion, profiles: Sequence[Profile]) -> Profile:
