@@ -1,16 +1,17 @@
 """A real server for tests: one event loop in a thread, a small synthetic library, free ports."""
 
 import asyncio
+import inspect
 import threading
 import time
-from collections.abc import Callable, Coroutine, Iterator, Sequence
+from collections.abc import AsyncGenerator, Awaitable, Callable, Iterator, Sequence
 from functools import cache
 from typing import Any, TypeVar
 
 import grpc
 import pytest
 
-from stridewire import Client
+from stridewire import AsyncClient, Client
 from stridewire._messages import Frame, Limits, Step, StreamError
 from stridewire.v1 import animation_pb2 as pb
 from stridewire.v1.animation_pb2_grpc import AnimationServiceStub
@@ -59,15 +60,55 @@ class LoopThread:
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
         self._thread.start()
 
-    def call(self, work: Coroutine[Any, Any, T]) -> T:
-        """Run a coroutine in the loop and wait for it."""
-        return asyncio.run_coroutine_threadsafe(work, self._loop).result(DEADLINE_S)
+    def call(self, work: Awaitable[T]) -> T:
+        """Run something awaitable in the loop and wait for it."""
+
+        async def run() -> T:
+            return await work
+
+        return asyncio.run_coroutine_threadsafe(run(), self._loop).result(DEADLINE_S)
 
     def stop(self) -> None:
         """End the loop."""
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join(DEADLINE_S)
         self._loop.close()
+
+
+class Awaited:
+    """An object of asyncio as a blocking one: the loop's thread waits for each call."""
+
+    def __init__(self, thread: LoopThread, target: Any) -> None:
+        self._thread = thread
+        self._target = target
+
+    def __getattr__(self, name: str) -> Any:
+        value = getattr(self._target, name)
+        return self._blocking(value) if callable(value) else value
+
+    def __enter__(self) -> "Awaited":
+        return Awaited(self._thread, self._thread.call(self._target.__aenter__()))
+
+    def __exit__(self, *error: Any) -> None:
+        self._thread.call(self._target.__aexit__(*error))
+
+    def _blocking(self, method: Callable[..., Any]) -> Callable[..., Any]:
+        def call(*args: Any, **kwargs: Any) -> Any:
+            result = method(*args, **kwargs)
+            if inspect.isasyncgen(result):
+                return self._iterate(result)
+            if inspect.iscoroutine(result):
+                return self._thread.call(result)
+            return Awaited(self._thread, result)
+
+        return call
+
+    def _iterate(self, generator: AsyncGenerator[Any, None]) -> Iterator[Any]:
+        while True:
+            try:
+                yield self._thread.call(anext(generator))
+            except StopAsyncIteration:
+                return
 
 
 @pytest.fixture(scope="session")
@@ -135,6 +176,22 @@ def client(address: str) -> Iterator[Client]:
     """Return a client of the shared server."""
     with Client(address, timeout_s=DEADLINE_S) as opened:
         yield opened
+
+
+@pytest.fixture(params=["blocking", "asyncio", "in process", "in process, asyncio"])
+def either(
+    request: pytest.FixtureRequest, address: str, small_library: Library, loop_thread: LoopThread
+) -> Iterator[Any]:
+    """Return a client of each kind in turn, all used like the blocking one."""
+    folder = str(small_library.path)
+    make: dict[str, Callable[[], Any]] = {
+        "blocking": lambda: Client(address, timeout_s=DEADLINE_S),
+        "asyncio": lambda: Awaited(loop_thread, AsyncClient(address, timeout_s=DEADLINE_S)),
+        "in process": lambda: Client.in_process(folder),
+        "in process, asyncio": lambda: Awaited(loop_thread, AsyncClient.in_process(folder)),
+    }
+    with make[request.param]() as client:
+        yield client
 
 
 @pytest.fixture

@@ -5,16 +5,21 @@ from typing import Any
 
 _HOME = {
     "__version__": "_version",
+    "AsyncClient": "aio",
     "Client": "client",
     **dict.fromkeys(
         (
             "CharacterSpec",
+            "CharacterUpdate",
+            "ClipTime",
             "CorrectionMode",
+            "DesiredMotion",
             "Detail",
             "Frame",
             "FrameFlag",
             "GroundPose",
             "Pacing",
+            "PoseFormat",
             "RootCorrection",
             "Sparse",
             "Trajectory",

@@ -1,69 +1,31 @@
 """The transport over gRPC, blocking."""
 
-import json
 import queue
 import threading
 import weakref
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any
 
 import grpc
 
-from stridewire._codec.queries import (
-    decode_search_result,
-    decode_server_info,
-    encode_search,
-)
+from stridewire._channel import CHANNEL_OPTIONS, encode_query, rpc_error
+from stridewire._codec.calls import CALL_BY_QUERY
 from stridewire._codec.requests import encode_request
 from stridewire._codec.responses import decode_response
-from stridewire._codec.status import DETAILS_KEY, decode_error
 from stridewire._errors import ProtocolError, StridewireError
 from stridewire._messages import (
+    AnswerT,
     ClientMessage,
     Close,
     Edit,
     Open,
     Opened,
-    SearchQuery,
-    SearchResult,
-    ServerInfo,
+    Query,
     ServerMessage,
     Step,
 )
 from stridewire.v1.animation_pb2_grpc import AnimationServiceStub
-from stridewire.v1.library_pb2 import GetInfoRequest
-from stridewire.v1.library_pb2_grpc import ServerServiceStub
-from stridewire.v1.match_pb2_grpc import MatchServiceStub
 
-T = TypeVar("T")
-
-_RETRIES = {
-    "methodConfig": [
-        {
-            "name": [
-                {"service": f"stridewire.v1.{name}Service"}
-                for name in ("Match", "Library", "Server")
-            ],
-            "retryPolicy": {
-                "maxAttempts": 4,
-                "initialBackoff": "0.1s",
-                "maxBackoff": "1s",
-                "backoffMultiplier": 2,
-                "retryableStatusCodes": ["UNAVAILABLE"],
-            },
-        }
-    ]
-}
-_CHANNEL_OPTIONS = [
-    ("grpc.service_config", json.dumps(_RETRIES)),
-    # Without these two a reader that stalls finds minutes of stale frames in its buffers.
-    ("grpc.http2.bdp_probe", 0),
-    ("grpc.http2.lookahead_bytes", 16_384),
-    ("grpc.keepalive_time_ms", 30_000),
-    ("grpc.keepalive_timeout_ms", 10_000),
-    ("grpc.http2.ping_timeout_ms", 10_000),
-    ("grpc.max_receive_message_length", 8 << 20),
-]
 _WAITING_REQUESTS = 64
 _WAITING_RESPONSES = 2
 _CLOSE_TIMEOUT_S = 2.0
@@ -80,10 +42,8 @@ class GrpcTransport:
     def __init__(self, address: str, timeout_s: float = 5.0) -> None:
         self._address = address
         self._timeout_s = timeout_s
-        self._channel = grpc.insecure_channel(address, _CHANNEL_OPTIONS)
+        self._channel = grpc.insecure_channel(address, CHANNEL_OPTIONS)
         self._animation = AnimationServiceStub(self._channel)
-        self._match = MatchServiceStub(self._channel)
-        self._server = ServerServiceStub(self._channel)
         self._streams: weakref.WeakSet[GrpcStream] = weakref.WeakSet()
 
     def open(self, message: Open) -> "GrpcStream":
@@ -92,25 +52,22 @@ class GrpcTransport:
         self._streams.add(stream)
         return stream
 
-    def search(self, query: SearchQuery) -> SearchResult:
-        """Search the motion database."""
-        return decode_search_result(self._ask(self._match.Search, encode_search(query)))
-
-    def info(self) -> ServerInfo:
-        """Tell versions, libraries, limits."""
-        return decode_server_info(self._ask(self._server.GetInfo, GetInfoRequest()))
+    def ask(self, query: Query[AnswerT]) -> AnswerT:
+        """Answer a query."""
+        call = CALL_BY_QUERY[type(query)]
+        method = self._channel.unary_unary(call.path, bytes, bytes)
+        try:
+            data = method(encode_query(call, query), timeout=self._timeout_s)
+        except grpc.RpcError as error:
+            raise rpc_error(error, self._address) from error
+        answer: AnswerT = call.deserialize(data)
+        return answer
 
     def close(self) -> None:
         """End all sessions and close the connection."""
         for stream in list(self._streams):
             stream.close()
         self._channel.close()
-
-    def _ask(self, method: Callable[..., T], request: Any) -> T:
-        try:
-            return method(request, timeout=self._timeout_s)
-        except grpc.RpcError as error:
-            raise to_error(error, self._address) from error
 
 
 class GrpcStream:
@@ -207,7 +164,7 @@ class GrpcStream:
                 self._responses.put(decode_response(response))
         except grpc.RpcError as error:
             if not (self._closing and error.code() is grpc.StatusCode.CANCELLED):
-                self._end = to_error(error, self._address)
+                self._end = rpc_error(error, self._address)
                 self._end.__cause__ = error
         except StridewireError as error:
             self._end = error
@@ -236,13 +193,3 @@ class GrpcStream:
             self._responses.get(timeout=0.05)
         except queue.Empty:
             return
-
-
-def to_error(error: grpc.RpcError, address: str) -> StridewireError:
-    """Return what a gRPC error means."""
-    metadata: dict[str, Any] = dict(error.trailing_metadata() or ())  # type: ignore[arg-type]
-    details: bytes | None = metadata.get(DETAILS_KEY)
-    message = error.details() or ""
-    if error.code() is grpc.StatusCode.UNAVAILABLE and details is None:  # not said by our server
-        message = f"no connection to {address} ({message}); `stridewire serve` starts a server"
-    return decode_error(error.code().name, message, details)

@@ -1,42 +1,30 @@
 """A session: controls in, frames out."""
 
 import time
-from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from types import TracebackType
 
-import numpy as np
 import numpy.typing as npt
 
-from stridewire._errors import (
-    InvalidRequestError,
-    ProtocolError,
-    StridewireError,
-    UnavailableError,
-    Violation,
-)
+from stridewire._base_session import FRAME_S, RETRY_S, BaseSession
+from stridewire._errors import StridewireError, UnavailableError
 from stridewire._messages import (
     CharacterSpec,
     CharacterUpdate,
     CorrectionMode,
-    Edit,
     Frame,
-    GroundPose,
-    Notice,
+    Open,
     Pacing,
-    RootCorrection,
+    ServerMessage,
     Sparse,
     Step,
-    StreamError,
 )
 from stridewire._transport import Stream
-from stridewire.motion.array_types import Floats
-
-FRAME_S = 1.0 / 60.0
 
 
-class Session:
+class Session(BaseSession):
     """Characters that are driven together.
 
     With client pacing, `step` sends controls and waits for the frame they make. With server pacing,
@@ -46,23 +34,16 @@ class Session:
     """
 
     def __init__(
-        self, stream: Stream, characters: Sequence[CharacterSpec], timeout_s: float
+        self,
+        open_stream: Callable[[Open], Stream],
+        opening: Open,
+        timeout_s: float,
+        reconnect_s: float = 0.0,
     ) -> None:
-        self.opened = stream.opened
-        """What the server said at the beginning: skeleton, library, settings, limits."""
-        self.characters = tuple(spec.id for spec in characters)
-        """Ids in the order of adding, edits included."""
-        self.errors: deque[StreamError] = deque(maxlen=256)
-        """What the server refused, the newest last."""
-        self.notices: deque[Notice] = deque(maxlen=16)
-        """News of the server, the newest last."""
-        self._stream = stream
-        self._timeout_s = timeout_s
-        self._credits = stream.opened.settings.max_frames_in_flight
-        self._step = 0
-        self._taken = 0
-        self._acknowledged = 0
-        self._sparse: list[Sparse] = []
+        self._open_stream = open_stream
+        self._stream = open_stream(opening)
+        self._reconnect_s = reconnect_s
+        super().__init__(opening, self._stream.opened, timeout_s)
 
     def step(
         self,
@@ -88,13 +69,13 @@ class Session:
             TimeoutError: If no frame came in time.
             StridewireError: If the session has ended.
         """
-        if self.opened.settings.pacing is not Pacing.CLIENT:
-            raise ProtocolError("step is for client pacing; here use control() and frames()")
-        number = self.control(velocity, facing, dt=dt, characters=characters, sparse=sparse)
-        for frame in self.frames():
-            if frame.applied_step == number:
-                return frame
-        raise UnavailableError("the session has ended")
+        self._require_client_pacing()
+        message = self._next_step(velocity, facing, dt, characters, sparse, None)
+        try:
+            return self._step_with(message)
+        except UnavailableError as error:
+            self._reopen(error, message.step - 1)
+            return self._step_with(replace(message, last_frame=0))
 
     def control(
         self,
@@ -119,22 +100,13 @@ class Session:
         Returns:
             The step's number; the frame that it is in has it as `applied_step`.
         """
-        count = len(self.characters) if characters is None else len(characters)
-        self._step += 1
-        waiting, self._sparse = self._sparse, []
-        message = Step(
-            step=self._step,
-            dt_s=dt,
-            last_frame=self._taken,
-            client_time_s=time.perf_counter() if client_time_s is None else client_time_s,
-            characters=None if characters is None else np.asarray(characters, np.uint32),
-            velocity_xz=_rows("velocity", velocity, count, 2),
-            facing_yaw=_rows("facing", facing, count),
-            sparse=(*waiting, *sparse),
-        )
-        self._acknowledged = message.last_frame
-        self._stream.send(message)
-        return self._step
+        message = self._next_step(velocity, facing, dt, characters, sparse, client_time_s)
+        try:
+            self._stream.send(message)
+        except UnavailableError:
+            if not self._reconnect_s:
+                raise  # else `frames` opens again, under the controls that hold
+        return message.step
 
     def frames(self) -> Iterator[Frame]:
         """Yield frames as they come, until the session ends; acknowledges those that were taken.
@@ -143,16 +115,11 @@ class Session:
             TimeoutError: If no frame came in time.
             StridewireError: If the session ended with an error.
         """
-        while (message := self._stream.receive(self._timeout_s)) is not None:
-            match message:
-                case Frame():
-                    self._taken = message.frame
-                    yield message
-                    self._acknowledge()
-                case StreamError():
-                    self.errors.append(message)
-                case Notice():
-                    self.notices.append(message)
+        while (message := self._receive()) is not None:
+            frame = self._take(message)
+            if frame is not None:
+                yield frame
+                self._acknowledge()
 
     def edit(
         self,
@@ -162,9 +129,7 @@ class Session:
         update: Sequence[CharacterUpdate] = (),
     ) -> None:
         """Add, remove and change characters; what is refused comes as one of `errors`."""
-        self._stream.send(Edit(tuple(add), tuple(remove), tuple(update)))
-        kept = [id for id in self.characters if id not in set(remove)]
-        self.characters = (*kept, *(spec.id for spec in add if spec.id not in kept))
+        self._stream.send(self._edit(add, remove, update))
 
     def teleport(self, character: int, position: Sequence[float], yaw: float = 0.0) -> None:
         """Put a character somewhere else without a blend; its history is cleared.
@@ -174,7 +139,8 @@ class Session:
             position: x, y, z in the world; metres.
             yaw: Heading about +Y; radians.
         """
-        self._correct(character, position, yaw, CorrectionMode.TELEPORT)
+        self._correction(character, position, yaw, CorrectionMode.TELEPORT)
+        self._send_corrections()
 
     def correct_root(self, character: int, position: Sequence[float], yaw: float = 0.0) -> None:
         """Tell where the engine has moved a character; it blends there.
@@ -184,10 +150,12 @@ class Session:
             position: x, y, z in the world; metres.
             yaw: Heading about +Y; radians.
         """
-        self._correct(character, position, yaw, CorrectionMode.ADJUST)
+        self._correction(character, position, yaw, CorrectionMode.ADJUST)
+        self._send_corrections()
 
     def close(self) -> None:
         """End the session; twice is harmless."""
+        self._reconnect_s = 0.0
         self._stream.close()
 
     def __enter__(self) -> "Session":
@@ -201,33 +169,53 @@ class Session:
     ) -> None:
         self.close()
 
-    def _correct(
-        self, character: int, position: Sequence[float], yaw: float, mode: CorrectionMode
-    ) -> None:
-        """Send a correction with the next step, or at once where the server makes the steps."""
-        x, y, z = map(float, position)
-        root = GroundPose((x, y, z), float(yaw))
-        self._sparse.append(Sparse(character, root_correction=RootCorrection(root, mode)))
+    def _step_with(self, message: Step) -> Frame:
+        self._stream.send(message)
+        while (answer := self._stream.receive(self._timeout_s)) is not None:
+            frame = self._take(answer)
+            if frame is not None and frame.applied_step == message.step:
+                return frame
+        raise UnavailableError("the session has ended")
+
+    def _receive(self) -> ServerMessage | None:
+        try:
+            return self._stream.receive(self._timeout_s)
+        except UnavailableError as error:
+            self._reopen(error, self._step)
+            return self._stream.receive(self._timeout_s)
+
+    def _send_corrections(self) -> None:
+        """Send corrections at once where the server makes the steps; else with the next step."""
         if self.opened.settings.pacing is Pacing.SERVER:
             self.control()
 
     def _acknowledge(self) -> None:
-        """Acknowledge without a step where steps come too seldom to do it in time."""
-        if self._credits and self._taken - self._acknowledged >= max(1, self._credits // 2):
-            self._acknowledged = self._taken
+        message = self._acknowledgement()
+        if message is not None:
             with suppress(StridewireError):  # where the session has ended, `receive` says why
-                self._stream.send(Step(step=self._step, last_frame=self._taken, ack_only=True))
+                self._stream.send(message)
 
+    def _reopen(self, lost: UnavailableError, number: int) -> None:
+        """Open again at the last roots under the controls that hold, for as long as is allowed.
 
-def _rows(name: str, values: npt.ArrayLike | None, count: int, *shape: int) -> Floats | None:
-    """Return `(count, *shape)` float32, one row repeated for all where only one is given."""
-    if values is None:
-        return None
-    array = np.asarray(values, np.float32)
-    if array.shape == shape:
-        array = np.broadcast_to(array, (count, *shape))
-    if array.shape != (count, *shape):
-        raise InvalidRequestError.of(
-            Violation(name, f"shape {array.shape}; give {(count, *shape)}, or {shape} for all")
-        )
-    return array
+        Args:
+            lost: Why.
+            number: Of the step that asks for the controls that hold.
+
+        Raises:
+            UnavailableError: What was lost, if that does not succeed in time.
+        """
+        if not self._reconnect_s:
+            raise lost
+        self._stream.close()
+        end, wait = time.monotonic() + self._reconnect_s, RETRY_S
+        while True:
+            try:
+                self._stream = self._open_stream(self._opening_again())
+                break
+            except UnavailableError:
+                if time.monotonic() + wait > end:
+                    raise lost from None
+            time.sleep(wait)
+            wait = min(2.0 * wait, 1.0)
+        self._stream.send(self._begin_again(self._stream.opened, number))

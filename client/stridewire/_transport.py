@@ -1,19 +1,10 @@
-"""What a `Client` needs of whatever runs the characters: a server, or a runtime in process."""
+"""What a client needs of whatever runs the characters: a server, or a runtime in process."""
 
 from importlib.metadata import entry_points
-from typing import Protocol
+from typing import Any, Protocol
 
 from stridewire._errors import StridewireError
-from stridewire._messages import (
-    Edit,
-    Open,
-    Opened,
-    SearchQuery,
-    SearchResult,
-    ServerInfo,
-    ServerMessage,
-    Step,
-)
+from stridewire._messages import AnswerT, Edit, Open, Opened, Query, ServerMessage, Step
 
 
 class Stream(Protocol):
@@ -42,13 +33,43 @@ class Transport(Protocol):
     def open(self, message: Open) -> Stream:
         """Open a session."""
 
-    def search(self, query: SearchQuery) -> SearchResult:
-        """Search the motion database."""
-
-    def info(self) -> ServerInfo:
-        """Tell versions, libraries, limits."""
+    def ask(self, query: Query[AnswerT]) -> AnswerT:
+        """Answer a query."""
 
     def close(self) -> None:
+        """Free what the transport holds; twice is harmless."""
+
+
+class AsyncStream(Protocol):
+    """`Stream` for asyncio."""
+
+    opened: Opened
+
+    async def send(self, message: Step | Edit) -> None:
+        """Send a message; returns without waiting for an answer."""
+
+    async def receive(self, timeout_s: float) -> ServerMessage | None:
+        """Wait for the next message; None when the stream has ended.
+
+        Raises:
+            TimeoutError: If nothing came in time.
+            StridewireError: If the stream ended with an error.
+        """
+
+    async def close(self) -> None:
+        """End the session and free what it holds; twice is harmless."""
+
+
+class AsyncTransport(Protocol):
+    """`Transport` for asyncio; used within one event loop."""
+
+    async def open(self, message: Open) -> AsyncStream:
+        """Open a session."""
+
+    async def ask(self, query: Query[AnswerT]) -> AnswerT:
+        """Answer a query."""
+
+    async def close(self) -> None:
         """Free what the transport holds; twice is harmless."""
 
 
@@ -58,16 +79,29 @@ def in_process_transport(library: str | None) -> Transport:
     Raises:
         StridewireError: If the extra that runs characters is not installed.
     """
-    for point in entry_points(group="stridewire.transports", name="in-process"):
+    transport: Transport = _factory("in-process")(library)
+    return transport
+
+
+def async_in_process_transport(library: str | None) -> AsyncTransport:
+    """Return the same for asyncio; the library is opened when it is first needed.
+
+    Raises:
+        StridewireError: If the extra that runs characters is not installed.
+    """
+    transport: AsyncTransport = _factory("in-process-asyncio")(library)
+    return transport
+
+
+def _factory(name: str) -> Any:
+    for point in entry_points(group="stridewire.transports", name=name):
         try:
-            factory = point.load()
+            return point.load()
         except ModuleNotFoundError as error:
             raise StridewireError(
                 f"running characters in this process needs {error.name}: "
                 "pip install 'stridewire[server]'"
             ) from error
-        transport: Transport = factory(library)
-        return transport
     raise StridewireError(
         "no runtime is installed in this environment: pip install 'stridewire[server]', "
         "or give the address of a server"

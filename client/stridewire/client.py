@@ -1,29 +1,38 @@
 """The client: the same interface to a server over gRPC and to a runtime in this process."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from types import TracebackType
 
+from stridewire._base_client import DEFAULT_ADDRESS, opening, search_query, to_clip
 from stridewire._messages import (
     CharacterSpec,
+    ClipInfo,
+    ClipQuery,
+    ClipsQuery,
     ClipTime,
     DesiredMotion,
     Detail,
-    Open,
+    InfoQuery,
+    LibrariesQuery,
+    LibraryDetails,
+    LibraryInfo,
+    LibraryQuery,
     Pacing,
-    SearchQuery,
+    PoseFormat,
     SearchResult,
     ServerInfo,
+    SkeletonQuery,
     Trajectory,
 )
 from stridewire._session import Session
 from stridewire._transport import Transport, in_process_transport
-
-DEFAULT_ADDRESS = "127.0.0.1:50051"
+from stridewire.motion.clip import Clip, Pose
+from stridewire.motion.skeleton import Skeleton
 
 
 class Client:
-    """Opens sessions and asks the motion database.
+    """Opens sessions, asks the motion database, reads libraries.
 
         with Client("127.0.0.1:50051") as client, client.open_session(characters=4) as session:
             frame = session.step(velocity=(0.0, 1.4))
@@ -54,9 +63,12 @@ class Client:
         library: str = "",
         pacing: Pacing = Pacing.CLIENT,
         rate_hz: float = 60.0,
+        output_skeleton: Skeleton | None = None,
+        format: PoseFormat = PoseFormat.F32,
         max_frames_in_flight: int = 30,
         detail: Detail = Detail.EVENTS,
         seed: int = 0,
+        reconnect_s: float = 0.0,
     ) -> Session:
         """Open a session.
 
@@ -65,32 +77,36 @@ class Client:
             library: Name of the library; empty means the server's default.
             pacing: Whether `step` makes frames or the server's clock.
             rate_hz: Frames per second with server pacing.
+            output_skeleton: Skeleton that poses are retargeted to; None means the library's.
+            format: How poses travel; half floats need half the bandwidth.
             max_frames_in_flight: Frames that may be under way unacknowledged; 0 means no limit.
             detail: What frames tell beside poses.
             seed: Seed of everything that is drawn by lot.
+            reconnect_s: For how long a lost connection is opened again, each character at its last
+                root under the control that held; 0 means not at all.
 
         Raises:
             InvalidRequestError: If a value is not allowed.
             NotFoundError: If there is no such library.
             UnavailableError: If there is no server.
         """
-        given = range(characters) if isinstance(characters, int) else characters
-        specs = [c if isinstance(c, CharacterSpec) else CharacterSpec(c) for c in given]
-        message = Open(
-            characters=specs,
+        message = opening(
+            characters,
             library=library,
             pacing=pacing,
             rate_hz=rate_hz,
+            output_skeleton=output_skeleton,
+            format=format,
             max_frames_in_flight=max_frames_in_flight,
             detail=detail,
             seed=seed,
         )
-        return Session(self._transport.open(message), specs, self._timeout_s)
+        return Session(self._transport.open, message, self._timeout_s, reconnect_s)
 
     def search(
         self,
-        clip: str,
-        time_s: float,
+        pose: str | Pose,
+        time_s: float = 0.0,
         intent: Trajectory | DesiredMotion | None = None,
         *,
         k: int = 5,
@@ -99,12 +115,13 @@ class Client:
         filter: str = "",
         weights: Mapping[str, float] | None = None,
     ) -> SearchResult:
-        """Find the moments that continue best from a moment of a clip.
+        """Find the moments that continue best from a moment of a clip, or from a pose.
 
         Args:
-            clip: Name of the clip to continue from.
-            time_s: Seconds within it.
-            intent: Where to go; None means where the clip itself goes.
+            pose: Name of the clip to continue from, or one pose on the library's skeleton; of a
+                pose neither velocities nor the way before it are compared.
+            time_s: Seconds within the clip.
+            intent: Where to go; None means where the clip itself goes, with a pose anywhere.
             k: Number of matches.
             library: Name of the library; empty means the server's default.
             exclude: Moments that must not be among the matches; the result tells those that would
@@ -116,15 +133,81 @@ class Client:
             InvalidRequestError: If a value is not allowed.
             NotFoundError: If there is no such library or clip.
         """
-        return self._transport.search(
-            SearchQuery(
-                ClipTime(clip, time_s), intent, k, library, tuple(exclude), filter, weights or {}
+        return self._transport.ask(
+            search_query(
+                pose,
+                time_s,
+                intent,
+                k=k,
+                library=library,
+                exclude=exclude,
+                filter=filter,
+                weights=weights,
             )
         )
 
     def info(self) -> ServerInfo:
         """Tell versions, libraries, limits."""
-        return self._transport.info()
+        return self._transport.ask(InfoQuery())
+
+    def libraries(self) -> tuple[LibraryInfo, ...]:
+        """List the open libraries, the default first."""
+        return self._transport.ask(LibrariesQuery())
+
+    def library(self, name: str = "") -> LibraryDetails:
+        """Tell what a library holds; an empty name means the default.
+
+        Raises:
+            NotFoundError: If there is no such library.
+        """
+        return self._transport.ask(LibraryQuery(name))
+
+    def clips(
+        self, library: str = "", *, name_contains: str = "", tag: str = ""
+    ) -> Iterator[ClipInfo]:
+        """Yield the clips of a library; pages are fetched as they are needed.
+
+        Args:
+            library: Name of the library; empty means the server's default.
+            name_contains: Only clips whose name holds this.
+            tag: Only clips with this tag somewhere.
+
+        Raises:
+            NotFoundError: If there is no such library.
+        """
+        query = ClipsQuery(library, name_contains=name_contains, tag=tag)
+        while True:
+            page = self._transport.ask(query)
+            yield from page.clips
+            if not page.next_page_token:
+                return
+            query = query.after(page)
+
+    def clip(
+        self, name: str, *, library: str = "", start_s: float = 0.0, end_s: float = 0.0
+    ) -> Clip:
+        """Return a clip of a library, or a span of at most 60 seconds.
+
+        Args:
+            name: Name of the clip.
+            library: Name of the library; empty means the server's default.
+            start_s: Begin within the clip; seconds.
+            end_s: End within the clip; seconds; 0 means its end.
+
+        Raises:
+            InvalidRequestError: If the span is not within the clip or too long.
+            NotFoundError: If there is no such library or clip.
+        """
+        poses = self._transport.ask(ClipQuery(name, library, start_s, end_s))
+        return to_clip(poses, self.skeleton(library), start_s)
+
+    def skeleton(self, library: str = "") -> Skeleton:
+        """Return the skeleton of a library; an empty name means the default.
+
+        Raises:
+            NotFoundError: If there is no such library.
+        """
+        return self._transport.ask(SkeletonQuery(library))
 
     def close(self) -> None:
         """Free what the client holds; twice is harmless."""

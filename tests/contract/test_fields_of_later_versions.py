@@ -10,13 +10,11 @@ from stridewire.v1 import (
     animation_pb2,
     blend_pb2,
     blend_pb2_grpc,
-    match_pb2,
     pose_pb2,
     stitch_pb2,
     stitch_pb2_grpc,
 )
 from stridewire.v1 import animation_pb2 as pb
-from stridewire.v1.match_pb2_grpc import MatchServiceStub
 
 Call = Callable[..., list[pb.AnimateResponse]]
 
@@ -32,9 +30,6 @@ SPEC = {
 }
 SPARSE = {
     "ground": {"ground": pb.Ground(height=0.1)},
-}
-SEARCH = {
-    "pose.inline": {"pose": pose_pb2.PoseSource(inline=pose_pb2.Poses(frames=1))},
 }
 
 
@@ -72,17 +67,6 @@ def test_sparse_controls_of_a_step(raw_stream: Call, field: str) -> None:
     assert violation.field == f"step.sparse[0].{field}"
     assert "not implemented yet" in violation.description
     assert responses[2].frame.applied_step == 1
-
-
-@pytest.mark.parametrize("field", SEARCH)
-def test_search(address: str, field: str) -> None:
-    """A search with a later field is answered UNIMPLEMENTED and names it."""
-    pose = {"pose": pose_pb2.PoseSource(clip=pose_pb2.ClipTime(clip="walk-1.1"))}
-    request = match_pb2.SearchRequest(**{**pose, **SEARCH[field]})
-    with grpc.insecure_channel(address) as channel, pytest.raises(grpc.RpcError) as raised:
-        MatchServiceStub(channel).Search(request, timeout=10.0)
-    assert raised.value.code() is grpc.StatusCode.UNIMPLEMENTED
-    assert field in raised.value.details()
 
 
 def test_services_of_later_versions(address: str) -> None:

@@ -1,5 +1,23 @@
 """The servers that these tests talk to."""
 
-from serving import address, client, loop_thread, raw_stream, serve, small_library, stopping
+from serving import (
+    address,
+    client,
+    either,
+    loop_thread,
+    raw_stream,
+    serve,
+    small_library,
+    stopping,
+)
 
-__all__ = ["address", "client", "loop_thread", "raw_stream", "serve", "small_library", "stopping"]
+__all__ = [
+    "address",
+    "client",
+    "either",
+    "loop_thread",
+    "raw_stream",
+    "serve",
+    "small_library",
+    "stopping",
+]

@@ -1,4 +1,4 @@
-"""In this process and over gRPC the same messages give the same clips, times and poses."""
+"""Over gRPC and in this process, blocking and awaited, the same messages give the same frames."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
@@ -67,11 +67,11 @@ def follow_paths(session: Session) -> list[Frame]:
 @pytest.mark.parametrize("detail", [Detail.EVENTS, Detail.COSTS, Detail.NONE])
 @pytest.mark.parametrize("play", [follow_a_script, hitch_and_pause, come_and_go, follow_paths])
 def test_frames_are_the_same(
-    client: Client, small_library: Library, play: Play, detail: Detail
+    either: Client, small_library: Library, play: Play, detail: Detail
 ) -> None:
     """Counters, times, events and flags are equal, poses within the tolerance, errors equal."""
     runs = []
-    for target in (client, Client.in_process(small_library.path)):
+    for target in (either, Client.in_process(small_library.path)):
         with target.open_session(3, detail=detail, seed=11) as session:
             runs.append((play(session), [error.violations for error in session.errors]))
     (over_wire, refused_over_wire), (here, refused_here) = runs
@@ -110,13 +110,13 @@ def told(value: object, costs: list[float], name: str = "") -> object:
     return value
 
 
-def test_searches_are_the_same(client: Client, small_library: Library) -> None:
+def test_searches_are_the_same(either: Client, small_library: Library) -> None:
     """The same clips and times in the same order, costs as float32."""
     here = Client.in_process(small_library.path)
     name = small_library.clips[3].name
     for intent in (None, DesiredMotion(0.5, 1.2), DesiredMotion(0.0, 0.0, 1.0)):
         exclude = [ClipTime(name, 1.5)]
-        a, b = (target.search(name, 1.5, intent, k=9, exclude=exclude) for target in (client, here))
+        a, b = (target.search(name, 1.5, intent, k=9, exclude=exclude) for target in (either, here))
         assert [(m.clip, m.time_s, m.tags) for m in a.matches] == [
             (m.clip, m.time_s, m.tags) for m in b.matches
         ]
@@ -124,15 +124,14 @@ def test_searches_are_the_same(client: Client, small_library: Library) -> None:
         assert (a.library, a.content_hash) == (b.library, b.content_hash)
 
 
-def test_paced_sessions_have_the_same_surface(client: Client, small_library: Library) -> None:
-    """With server pacing both give evenly timed frames that follow the newest control."""
-    for target in (client, Client.in_process(small_library.path)):
-        with target.open_session(pacing=Pacing.SERVER, rate_hz=120.0) as session:
-            session.control(velocity=(0.0, 1.0))
-            number = session.control(velocity=(0.0, 1.4))
-            times = []
-            for frame in session.frames():
-                times.append(frame.time_s)
-                if frame.applied_step == number and len(times) >= 20:
-                    break
-        np.testing.assert_allclose(np.diff(times), 1.0 / 120.0, atol=1e-9)
+def test_paced_sessions_have_the_same_surface(either: Client) -> None:
+    """With server pacing frames are evenly timed and follow the newest control."""
+    with either.open_session(pacing=Pacing.SERVER, rate_hz=120.0) as session:
+        session.control(velocity=(0.0, 1.0))
+        number = session.control(velocity=(0.0, 1.4))
+        times = []
+        for frame in session.frames():
+            times.append(frame.time_s)
+            if frame.applied_step == number and len(times) >= 20:
+                break
+    np.testing.assert_allclose(np.diff(times), 1.0 / 120.0, atol=1e-9)

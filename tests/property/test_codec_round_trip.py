@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 
-from stridewire._codec import queries, requests, responses, status
+from stridewire._codec import catalogue, queries, requests, responses, status
 from stridewire._errors import ERROR_BY_CODE, StridewireError, Violation
 from stridewire._messages import (
     CharacterSpec,
@@ -308,7 +308,7 @@ def test_search_results_survive_the_wire(result: SearchResult) -> None:
 @given(infos)
 def test_server_info_survives_the_wire(info: ServerInfo) -> None:
     """Decoding undoes encoding."""
-    assert_same(queries.decode_server_info(queries.encode_server_info(info)), info)
+    assert_same(catalogue.decode_info(catalogue.encode_info(info)), info)
 
 
 @given(

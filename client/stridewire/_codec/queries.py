@@ -1,29 +1,25 @@
-"""Unary queries: search of the motion database, what the server is."""
+"""Search of the motion database."""
 
+import numpy as np
+
+from stridewire._codec.catalogue import decode_poses, encode_poses
 from stridewire._codec.matches import (
     decode_excluded,
     decode_match,
     encode_excluded,
     encode_match,
 )
-from stridewire._codec.shared import (
-    decode_library_info,
-    decode_limits,
-    decode_trajectory,
-    encode_library_info,
-    encode_limits,
-    encode_trajectory,
-)
-from stridewire._errors import InvalidRequestError, NotImplementedYetError, Violation
+from stridewire._codec.shared import decode_trajectory, encode_trajectory
+from stridewire._errors import InvalidRequestError, Violation
 from stridewire._messages import (
     ClipTime,
     DesiredMotion,
     SearchQuery,
     SearchResult,
-    ServerInfo,
     Trajectory,
 )
-from stridewire.v1 import library_pb2, match_pb2, pose_pb2
+from stridewire.motion.clip import Pose
+from stridewire.v1 import match_pb2, pose_pb2
 
 _DEFAULT_MATCHES = 5
 
@@ -32,7 +28,7 @@ def encode_search(query: SearchQuery) -> match_pb2.SearchRequest:
     """Encode a search."""
     wire = match_pb2.SearchRequest(
         library=query.library,
-        pose=pose_pb2.PoseSource(clip=_encode_clip_time(query.pose)),
+        pose=_encode_pose(query.pose),
         filter=query.filter,
         weights=query.weights,
         k=query.k,
@@ -50,17 +46,10 @@ def decode_search(wire: match_pb2.SearchRequest) -> SearchQuery:
     """Decode a search.
 
     Raises:
-        InvalidRequestError: If there is no pose, or two libraries are named.
-        NotImplementedYetError: If the pose is inline.
+        InvalidRequestError: If there is no pose or not one pose, or two libraries are named.
     """
-    if wire.pose.WhichOneof("source") == "inline":
-        raise NotImplementedYetError("pose.inline is not implemented yet; refer to a clip")
-    if not wire.pose.HasField("clip"):
-        raise InvalidRequestError.of(
-            Violation("pose", "absent; give the clip and the time to continue from")
-        )
     return SearchQuery(
-        pose=_decode_clip_time(wire.pose.clip),
+        pose=_decode_pose(wire.pose),
         intent=_decode_intent(wire),
         k=wire.k or _DEFAULT_MATCHES,
         library=_only_library(wire),
@@ -92,30 +81,40 @@ def decode_search_result(wire: match_pb2.SearchResponse) -> SearchResult:
     )
 
 
-def encode_server_info(info: ServerInfo) -> library_pb2.GetInfoResponse:
-    """Encode what the server is."""
-    return library_pb2.GetInfoResponse(
-        version=info.version,
-        libraries=map(encode_library_info, info.libraries),
-        models=info.models,
-        limits=encode_limits(info.limits),
-        stitchers=info.stitchers,
-        sessions=info.sessions,
-        characters=info.characters,
+def _encode_pose(pose: ClipTime | Pose) -> pose_pb2.PoseSource:
+    if isinstance(pose, ClipTime):
+        return pose_pb2.PoseSource(clip=_encode_clip_time(pose))
+    return pose_pb2.PoseSource(inline=encode_poses(pose[np.newaxis]))
+
+
+def _decode_pose(wire: pose_pb2.PoseSource) -> ClipTime | Pose:
+    match wire.WhichOneof("source"):
+        case "clip":
+            return _decode_clip_time(wire.clip)
+        case "inline":
+            return _decode_inline(wire.inline)
+    raise InvalidRequestError.of(
+        Violation("pose", "absent; give the clip and the time to continue from, or a pose inline")
     )
 
 
-def decode_server_info(wire: library_pb2.GetInfoResponse) -> ServerInfo:
-    """Decode what the server is."""
-    return ServerInfo(
-        version=wire.version,
-        libraries=tuple(map(decode_library_info, wire.libraries)),
-        models=dict(wire.models),
-        limits=decode_limits(wire.limits),
-        stitchers=tuple(wire.stitchers),
-        sessions=wire.sessions,
-        characters=wire.characters,
-    )
+def _decode_inline(wire: pose_pb2.Poses) -> Pose:
+    if wire.frames != 1:
+        raise InvalidRequestError.of(
+            Violation("pose.inline.frames", f"{wire.frames}; a pose to continue from is 1 frame")
+        )
+    wrong = [
+        Violation(f"pose.inline.{name}", f"{len(values)} values for 1 frame; expected {expected}")
+        for name, values, expected, fits in (
+            ("root", wire.root, "7", len(wire.root) == 7),
+            ("hips", wire.hips, "3", len(wire.hips) == 3),
+            ("rotations", wire.rotations, "4 a joint", len(wire.rotations) % 4 == 0),
+        )
+        if not fits
+    ]
+    if wrong:
+        raise InvalidRequestError.of(*wrong)
+    return decode_poses(wire)[0]
 
 
 def _encode_clip_time(moment: ClipTime) -> pose_pb2.ClipTime:

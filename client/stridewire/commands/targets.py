@@ -6,7 +6,8 @@ from typing import Any
 
 import click
 
-from stridewire.client import DEFAULT_ADDRESS, Client
+from stridewire._base_client import DEFAULT_ADDRESS
+from stridewire.client import Client
 
 
 def target_options(command: Callable[..., Any]) -> Callable[..., Any]:

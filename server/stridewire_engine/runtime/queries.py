@@ -1,4 +1,4 @@
-"""Queries by hand: what fits a moment of a clip and an intent, outside of any session."""
+"""Queries by hand: what fits a moment or a pose and an intent, outside of any session."""
 
 from collections.abc import Iterator
 
@@ -13,10 +13,11 @@ from stridewire._messages import (
     SearchResult,
     Trajectory,
 )
+from stridewire.motion.clip import Pose
 from stridewire_engine.library import Library
 from stridewire_engine.matching.explanation import Exclusion, explain
 from stridewire_engine.matching.search import Matcher
-from stridewire_engine.runtime import admission, controls, intent, query, sampling
+from stridewire_engine.runtime import admission, controls, inline_pose, intent, query, sampling
 from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.runtime.settings import TickSettings
 
@@ -37,8 +38,15 @@ def search(
     if wrong:
         raise InvalidRequestError.of(*wrong)
     library = matcher.library
-    row = row_of(library, "pose.clip", asked.pose)
-    features = library.features[row : row + 1].astype(np.float64)
+    weights = admission.merged_weights(asked.weights, matcher.schema)
+    if isinstance(asked.pose, Pose):
+        row, features = None, inline_pose.features(matcher, asked.pose)
+        weights = weights * inline_pose.known(matcher.schema, asked.intent is not None)
+        if not weights.any():
+            raise InvalidRequestError.of(Violation("weights", inline_pose.NOTHING_TO_COMPARE))
+    else:
+        row = row_of(library, "pose.clip", asked.pose)
+        features = library.features[row : row + 1].astype(np.float64)
     if asked.intent is not None:
         query.set_trajectory(matcher, features, _future(matcher, row, asked, settings))
     exclusions = [
@@ -46,7 +54,6 @@ def search(
         for i, moment in enumerate(asked.exclude)
     ]
     among = matcher.candidates.get(asked.filter, "filter")
-    weights = admission.merged_weights(asked.weights, matcher.schema)
     matches, excluded = explain(matcher, features[0], weights, exclusions, asked.k, among)
     return SearchResult(
         matches, library.name, library.manifest.content_hash, excluded, among.is_exact
@@ -77,6 +84,8 @@ def _violations(asked: SearchQuery, limits: Limits, matcher: Matcher) -> Iterato
         yield Violation("k", f"{asked.k}; allowed are 1 to {_MAX_K}, 0 means 5")
     if len(asked.exclude) > _MAX_EXCLUDED:
         yield Violation("exclude", f"{len(asked.exclude)} moments; allowed are {_MAX_EXCLUDED}")
+    if isinstance(asked.pose, Pose):
+        yield from inline_pose.check("pose.inline", asked.pose, matcher.library.skeleton)
     if isinstance(asked.intent, DesiredMotion):
         yield from _check_motion(asked.intent, limits)
     elif isinstance(asked.intent, Trajectory):
@@ -95,19 +104,24 @@ def _check_motion(motion: DesiredMotion, limits: Limits) -> Iterator[Violation]:
 
 
 def _future(
-    matcher: Matcher, row: int, asked: SearchQuery, settings: TickSettings
+    matcher: Matcher, row: int | None, asked: SearchQuery, settings: TickSettings
 ) -> intent.Prediction:
-    """Predict in the frame of the pose's root, with the very springs of the tick."""
+    """Predict in the frame of the pose's root, with the very springs of the tick.
+
+    Without a row, whose velocity would be known, the pose moves as it is asked to already.
+    """
     library = matcher.library
     state = Characters.allocate(1, len(library.skeleton), len(matcher.schema.channels))
     if isinstance(asked.intent, Trajectory):
         controls.follow(state, 0, asked.intent)
     elif isinstance(asked.intent, DesiredMotion):
-        at = sampling.Moments(np.array([row]), np.zeros(1, np.float32))
-        velocity = sampling.root_velocity(library, at)
-        state.sim_velocity[...] = velocity[:, :2]
-        state.sim_yaw_velocity[...] = velocity[:, 2]
         state.desired_velocity[0] = asked.intent.velocity_x, asked.intent.velocity_z
+        state.sim_velocity[...] = state.desired_velocity
+        if row is not None:
+            at = sampling.Moments(np.array([row]), np.zeros(1, np.float32))
+            velocity = sampling.root_velocity(library, at)
+            state.sim_velocity[...] = velocity[:, :2]
+            state.sim_yaw_velocity[...] = velocity[:, 2]
         if asked.intent.facing_yaw is not None:
             state.desired_facing[0] = asked.intent.facing_yaw
     goal = intent.set_goals(state, np.inf)

@@ -8,27 +8,36 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import count
+from typing import Any
 
 import numpy as np
 
 from stridewire import __version__
 from stridewire._errors import NotFoundError
 from stridewire._messages import (
+    AnswerT,
+    ClipQuery,
+    ClipsQuery,
     Edit,
     Frame,
+    InfoQuery,
+    LibrariesQuery,
+    LibraryQuery,
     Limits,
     Open,
     Opened,
+    Query,
     SearchQuery,
     SearchResult,
     ServerInfo,
     Settings,
+    SkeletonQuery,
     Step,
     StreamError,
 )
 from stridewire.motion.array_types import Floats
 from stridewire_engine.library import Library, LibraryError
-from stridewire_engine.runtime import admission, queries
+from stridewire_engine.runtime import admission, catalogue, queries
 from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.session import Session
 from stridewire_engine.runtime.settings import TickSettings
@@ -164,6 +173,16 @@ class Runtime:
                 frames[d.session.id] = d.session.end_tick(block, rows)
         return [(frames[d.session.id], d.error) for d in begun]
 
+    def ask(self, query: Query[AnswerT]) -> AnswerT:
+        """Answer a query.
+
+        Raises:
+            InvalidRequestError: If a field is not allowed.
+            NotFoundError: If there is no such library or clip.
+        """
+        answer: AnswerT = self._answer(query)
+        return answer
+
     def search(self, query: SearchQuery) -> SearchResult:
         """Search the motion database.
 
@@ -184,6 +203,24 @@ class Runtime:
             sessions=len(self._sessions),
             characters=sum(len(crowd) for crowd in self._crowds.values()),
         )
+
+    def _answer(self, query: Query[Any]) -> Any:
+        match query:
+            case SearchQuery():
+                return self.search(query)
+            case InfoQuery():
+                return self.info()
+            case LibrariesQuery():
+                return self.info().libraries
+            case LibraryQuery():
+                return catalogue.details(self.library(query.name))
+            case ClipsQuery():
+                return catalogue.clips(self.library(query.library), query)
+            case ClipQuery():
+                return catalogue.poses(self.library(query.library), query)
+            case SkeletonQuery():
+                return self.library(query.library).skeleton
+        raise TypeError(f"{type(query).__name__} is no query of this runtime")
 
     def _crowd(self, name: str) -> Crowd:
         if not name:

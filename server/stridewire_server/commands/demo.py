@@ -1,10 +1,6 @@
 """`stridewire demo`: a real server, a real client, ten seconds at 60 frames a second."""
 
 import json
-import subprocess
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import click
@@ -20,6 +16,7 @@ from stridewire.commands.driven import (
 from stridewire.drawing import contact_sheet
 from stridewire.formats.bvh_writing import write_bvh
 from stridewire.scripts import Controls, script
+from stridewire.testing import serve
 
 SCRIPTS = ("walk-turn-stop", "circle", "stop-and-go", "u-turns")
 """What the characters are asked to do, in turn."""
@@ -55,7 +52,7 @@ def demo(
     if not as_json:
         click.echo("starting a server …", err=True)
     with (
-        _server(library) as address,
+        serve(*([] if library is None else [library])) as address,
         Client(address) as client,
         client.open_session(spread_out(characters)) as session,
     ):
@@ -88,22 +85,3 @@ def _controls(time_s: float, characters: int) -> Controls:
         np.stack([c.velocity for c in each])[which, rows],
         np.stack([c.facing for c in each])[which, rows],
     )
-
-
-@contextmanager
-def _server(library: Path | None) -> Iterator[str]:
-    """Run `stridewire serve` on a free port; gives its address."""
-    command = [sys.executable, "-m", "stridewire", "serve", "--address", "127.0.0.1:0", "--json"]
-    if library is not None:
-        command += ["--library", str(library)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
-        try:
-            assert server.stdout is not None
-            ready = server.stdout.readline()
-            if not ready:
-                raise click.ClickException(
-                    f"the server ended with {server.wait()} before it was ready; see above"
-                )
-            yield json.loads(ready)["address"]
-        finally:
-            server.terminate()

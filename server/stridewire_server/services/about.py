@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from stridewire._codec.queries import encode_server_info
+from stridewire._codec.catalogue import decode_info_query, encode_info
 from stridewire.v1 import library_pb2
 from stridewire.v1.library_pb2_grpc import ServerServiceServicer
 from stridewire_server.ticker import Ticker
@@ -18,4 +18,5 @@ class ServerService(ServerServiceServicer):
         self, request: library_pb2.GetInfoRequest, context: Any
     ) -> library_pb2.GetInfoResponse:
         """Tell about the server."""
-        return encode_server_info(await self._ticker.query(self._ticker.runtime.info))
+        query = decode_info_query(request)
+        return encode_info(await self._ticker.query(self._ticker.runtime.ask, query))

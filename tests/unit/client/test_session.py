@@ -22,6 +22,7 @@ from stridewire._messages import (
     LibraryInfo,
     Limits,
     Notice,
+    Open,
     Opened,
     Pacing,
     PoseFormat,
@@ -87,7 +88,8 @@ class Script:
 
 def session(stream: Script, characters: int = 2) -> Session:
     """Return a session over a scripted stream."""
-    return Session(stream, [CharacterSpec(i) for i in range(characters)], 1.0)
+    opening = Open([CharacterSpec(i) for i in range(characters)])
+    return Session(lambda message: stream, opening, 1.0)
 
 
 def test_a_step_returns_the_frame_of_its_controls() -> None:
