@@ -62,16 +62,23 @@ def apply_step(roster: Roster, crowd: Crowd, step: Step, limits: Limits) -> Iter
         yield from _apply_sparse(roster, crowd, f"step.sparse[{i}]", sparse)
 
 
-def place(state: Characters, row: int, position: tuple[float, float, float], yaw: float) -> None:
-    """Put a character somewhere, without a history: it begins there with its next tick."""
-    kept = {name: getattr(state, name)[row].copy() for name in _KEPT}
-    state.put(slice(row, row + 1), state.fresh(1))
-    for name, value in kept.items():
-        getattr(state, name)[row] = value
-    state.root_position[row] = position
-    state.sim_position[row] = position[0], position[2]
-    for angle in (state.root_yaw, state.sim_yaw, state.goal_yaw):
-        angle[row] = yaw
+def place(state: Characters, rows: Indices, positions: Floats, yaws: Floats) -> None:
+    """Put characters somewhere, without a history: they begin there with their next tick.
+
+    Args:
+        state: Of the crowd.
+        rows: `(M,)`.
+        positions: `(M, 3)` world, metres.
+        yaws: `(M,)` radians.
+    """
+    kept = {name: getattr(state, name)[rows] for name in _KEPT}
+    state.put(rows, state.fresh(len(rows)))
+    for name, values in kept.items():
+        getattr(state, name)[rows] = values
+    state.root_position[rows] = positions
+    state.sim_position[rows] = positions[:, [0, 2]]
+    for angles in (state.root_yaw, state.sim_yaw, state.goal_yaw):
+        angles[rows] = yaws
 
 
 def set_filter(crowd: Crowd, row: int, text: str) -> None:
@@ -141,7 +148,7 @@ def _apply_sparse(roster: Roster, crowd: Crowd, path: str, sparse: Sparse) -> li
 def _correct(state: Characters, row: int, correction: RootCorrection) -> None:
     root = correction.root
     if correction.mode is CorrectionMode.TELEPORT:
-        place(state, row, root.position, root.yaw)
+        place(state, np.array([row]), np.array([root.position]), np.array([root.yaw]))
     else:
         state.correction[row, :3] = root.position - state.root_position[row]
         state.correction[row, 3] = wrap_angle(np.asarray(root.yaw - state.root_yaw[row]))

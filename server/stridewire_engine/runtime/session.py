@@ -67,8 +67,9 @@ class Session:
         """Add characters that were checked."""
         rows = self.crowd.add(len(specs))
         state = self.crowd.state
+        positions = np.array([spec.root.position for spec in specs])
+        controls.place(state, rows, positions, np.array([spec.root.yaw for spec in specs]))
         for row, spec in zip(rows, specs, strict=True):
-            controls.place(state, int(row), spec.root.position, spec.root.yaw)
             self._set(int(row), spec, _UPDATABLE)
         # characters that search at different times share the work evenly among the ticks
         state.until_search[rows] = self._rng.random(len(specs)) * self._interval
