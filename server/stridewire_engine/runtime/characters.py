@@ -70,7 +70,9 @@ class Characters:
     clip_time: Floats = _column(dtype=np.float64)
     """Seconds within the clip."""
     since_jump: Floats = _column(dtype=np.float64)
-    until_search: Floats = _column(dtype=np.float64)
+    until_search: Floats = _column(dtype=np.float64, fill=1.0)
+    stagger: Floats = _column(dtype=np.float64)
+    """From 0 to 1: spreads the searches of characters that were forced to search together."""
     searched_velocity: Floats = _column(2, dtype=np.float64)
     """Desired velocity at the last search."""
     searched_yaw: Floats = _column(dtype=np.float64)

@@ -211,9 +211,11 @@ def _weights(matcher: Matcher, rows: Characters, starting: Flags) -> Floats:
 
 
 def _restart_clocks(state: Characters, searched: Indices, settings: TickSettings) -> None:
-    # a stagger drawn at the start of a session survives, since the overshoot is carried on
-    overshoot = np.clip(state.until_search[searched], -settings.search_interval, 0.0)
-    state.until_search[searched] = settings.search_interval + overshoot
+    left = state.until_search[searched]
+    # in their turn, characters keep their rhythm; forced ones, often all at once, fall apart again
+    in_turn = settings.search_interval + np.maximum(left, -settings.search_interval)
+    apart = settings.search_interval * (1.0 - 0.5 * state.stagger[searched])
+    state.until_search[searched] = np.where(left <= 0.0, in_turn, apart)
     state.searched_velocity[searched] = state.desired_velocity[searched]
     state.searched_yaw[searched] = state.goal_yaw[searched]
     state.force_search[searched] = False

@@ -25,7 +25,15 @@ from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.roster import Roster
 
-_KEPT = ("desired_velocity", "desired_facing", "foot_lock", "stitcher", "filter", "weights")
+_KEPT = (
+    "desired_velocity",
+    "desired_facing",
+    "foot_lock",
+    "stitcher",
+    "filter",
+    "weights",
+    "stagger",
+)
 """What a character keeps when it is put somewhere else."""
 
 

@@ -133,7 +133,7 @@ class Runtime:
             settings=settings,
             limits=self._limits,
         )
-        session = Session(crowd, opened, self._limits, self._settings)
+        session = Session(crowd, opened, self._limits)
         session.add(message.characters)
         self._sessions[session.id] = session
         return session

@@ -25,7 +25,6 @@ from stridewire_engine.runtime import admission, controls
 from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.events import TickEvents
 from stridewire_engine.runtime.roster import Roster
-from stridewire_engine.runtime.settings import TickSettings
 from stridewire_engine.runtime.tick import Block
 
 _MAX_VIOLATIONS = 100
@@ -36,14 +35,11 @@ _UPDATABLE_LATER = ("responsiveness", "rate_divider")
 class Session:
     """One caller's characters. Made by `Runtime.open`; driven by one thread."""
 
-    def __init__(
-        self, crowd: Crowd, opened: Opened, limits: Limits, settings: TickSettings
-    ) -> None:
+    def __init__(self, crowd: Crowd, opened: Opened, limits: Limits) -> None:
         self.opened = opened
         self.crowd = crowd
         self._roster = Roster()
         self._limits = limits
-        self._interval = settings.search_interval
         self._rng = np.random.default_rng(opened.settings.seed)
         self._frame = 0
         self._time = 0.0
@@ -72,7 +68,7 @@ class Session:
         for row, spec in zip(rows, specs, strict=True):
             self._set(int(row), spec, _UPDATABLE)
         # characters that search at different times share the work evenly among the ticks
-        state.until_search[rows] = self._rng.random(len(specs)) * self._interval
+        state.stagger[rows] = self._rng.random(len(specs))
         self._roster.add(np.array([spec.id for spec in specs]), rows)
 
     def remove_all(self) -> None:

@@ -74,6 +74,6 @@ def test_open_is_copied_not_kept(runtime: Runtime) -> None:
     clocks = []
     for seed in (1, 1, 2):
         session = runtime.open(replace(opening(4), seed=seed))
-        clocks.append(session.crowd.state.until_search[session.rows].tolist())
+        clocks.append(session.crowd.state.stagger[session.rows].tolist())
     assert clocks[0] == clocks[1] != clocks[2]
     assert isinstance(opening(1), Open)
