@@ -210,3 +210,18 @@ def test_a_loop_may_be_entered_to_its_end(loop: Runtime) -> None:
     features = library.features[rows]
     trajectory = slice(15, 27)
     assert np.allclose(features[119, trajectory], features[1, trajectory], atol=0.05)
+
+
+def test_searches_that_were_forced_together_fall_apart_again(runtime: Runtime) -> None:
+    """After a command to all at once, no later tick searches for more than a third of them."""
+    session = runtime.open(opening(64))
+    state = session.crowd.state
+    step = Step(1, DT, velocity_xz=np.tile([0.0, 1.4], (64, 1)))
+    runtime.advance([(session, step)])
+    searched = []
+    for _ in range(24):
+        before = state.until_search[session.rows].copy()
+        runtime.advance([(session, step)])
+        searched.append(int(np.count_nonzero(state.until_search[session.rows] > before)))
+    assert sum(searched[4:]) > 64
+    assert max(searched[4:]) <= 21
