@@ -45,7 +45,7 @@ class Client:
 
     def __init__(self, target: str | Transport = DEFAULT_ADDRESS, timeout_s: float = 5.0) -> None:
         self._timeout_s = timeout_s
-        self._transport = _connect(target, timeout_s) if isinstance(target, str) else target
+        self._transport = grpc_transport(target, timeout_s) if isinstance(target, str) else target
 
     @classmethod
     def in_process(cls, library: str | os.PathLike[str] | None = None) -> "Client":
@@ -225,7 +225,8 @@ class Client:
         self.close()
 
 
-def _connect(address: str, timeout_s: float) -> Transport:
+def grpc_transport(address: str, timeout_s: float = 5.0) -> Transport:
+    """Return the transport to a server."""
     # Only here, so that a client in this process needs no gRPC.
     from stridewire._grpc import GrpcTransport
 

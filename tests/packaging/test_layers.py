@@ -22,6 +22,7 @@ ENGINE_FLOORS = {
     "commands": 5,
     "evaluation": 4,
     "in_process": 4,
+    "replaying": 4,
     "building": 3,
     "runtime": 3,
     "stitching": 3,

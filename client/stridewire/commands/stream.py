@@ -34,6 +34,11 @@ from stridewire.scripts import SCRIPT_NAMES, script
     type=click.Path(dir_okay=False, path_type=Path),
     help="BVH file to write, and one more for each further character.",
 )
+@click.option(
+    "--record",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="File to record the session in, for `stridewire replay`.",
+)
 @click.option("--library-name", default="", help="Library of the server; its default by default.")
 @target_options
 @click.option(
@@ -48,6 +53,7 @@ def stream(
     characters: int,
     seed: int,
     out: Path | None,
+    record: Path | None,
     library_name: str,
     address: str | None,
     library: Path | None,
@@ -58,7 +64,7 @@ def stream(
     control = partial(script(script_name).controls, characters=characters, seed=seed)
     paced = library is None if realtime is None else realtime
     with (
-        connect(address, library) as client,
+        connect(address, library, record) as client,
         client.open_session(spread_out(characters), library=library_name, seed=seed) as session,
     ):
         run = drive_with_progress(
@@ -66,6 +72,7 @@ def stream(
         )
         opened = session.opened
     files = write_motion(run, out, script_name) if out else []
+    files += [record] if record else []
     if as_json:
         settings = {"script": script_name, "seconds": seconds, "seed": seed}
         click.echo(json.dumps(as_object(opened, run, files, settings)))

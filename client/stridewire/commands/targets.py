@@ -7,7 +7,9 @@ from typing import Any
 import click
 
 from stridewire._base_client import DEFAULT_ADDRESS
-from stridewire.client import Client
+from stridewire._transport import in_process_transport
+from stridewire.client import Client, grpc_transport
+from stridewire.session_recording import RecordingTransport
 
 
 def target_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -21,10 +23,12 @@ def target_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return address(library(command))
 
 
-def connect(address: str | None, library: Path | None) -> Client:
-    """Return the client that the options ask for."""
+def connect(address: str | None, library: Path | None, record: Path | None = None) -> Client:
+    """Return the client that the options ask for, its session recorded where a file is given."""
     if library is None:
-        return Client(address or DEFAULT_ADDRESS)
-    if address is not None:
+        transport = grpc_transport(address or DEFAULT_ADDRESS)
+    elif address is not None:
         raise click.UsageError("--address and --library exclude each other; give one of them")
-    return Client.in_process(library)
+    else:
+        transport = in_process_transport(str(library))
+    return Client(transport if record is None else RecordingTransport(transport, record))

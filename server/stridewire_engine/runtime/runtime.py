@@ -35,12 +35,16 @@ from stridewire._messages import (
     Step,
     StreamError,
 )
+from stridewire.formats.session_file import SessionWriter
 from stridewire.motion.array_types import Floats
 from stridewire_engine.library import Library, LibraryError
 from stridewire_engine.runtime import admission, catalogue, queries
 from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.session import Session
 from stridewire_engine.runtime.settings import TickSettings
+
+Recorder = Callable[[Open, Opened], SessionWriter]
+"""From what was asked for and answered to the file that a session is recorded in."""
 
 
 @dataclass
@@ -60,6 +64,7 @@ class Runtime:
         limits: Limits | None = None,
         settings: TickSettings | None = None,
         clock: Callable[[], float] = time.perf_counter,
+        record: Recorder | None = None,
     ) -> None:
         """Index the libraries.
 
@@ -68,6 +73,7 @@ class Runtime:
             limits: Of messages.
             settings: Of the tick.
             clock: Seconds; only for the timings that are reported.
+            record: Gives each session that is opened the file that it is recorded in.
 
         Raises:
             LibraryError: If there is none, two share a name, or one cannot be searched.
@@ -86,6 +92,8 @@ class Runtime:
                 library, self._settings, self._limits.max_speed, clock
             )
         self._sessions: dict[str, Session] = {}
+        self._record = record
+        self._recordings: dict[str, SessionWriter] = {}
         self._numbers = count(1)
 
     @property
@@ -135,21 +143,29 @@ class Runtime:
         )
         session = Session(crowd, opened, self._limits)
         session.add(message.characters)
+        if self._record is not None:
+            self._recordings[session.id] = self._record(message, opened)
         self._sessions[session.id] = session
         return session
 
     def control(self, session: Session, step: Step) -> StreamError | None:
         """Apply a step's controls without advancing; for sessions that the server paces."""
+        if recording := self._recordings.get(session.id):
+            recording.control(step)
         return session.control(step)
 
     def edit(self, session: Session, edit: Edit) -> StreamError | None:
         """Add, remove and change characters."""
+        if recording := self._recordings.get(session.id):
+            recording.edit(edit)
         return session.edit(edit)
 
     def close(self, session: Session) -> None:
         """Free what a session holds; twice is harmless."""
         if self._sessions.pop(session.id, None) is not None:
             session.remove_all()
+        if recording := self._recordings.pop(session.id, None):
+            recording.close()
 
     def advance(
         self, due: Sequence[tuple[Session, Step]]
@@ -162,6 +178,9 @@ class Runtime:
         Returns:
             A frame, and what was wrong with the step, for each session in order.
         """
+        for session, step in due:
+            if recording := self._recordings.get(session.id):
+                recording.advance(step)
         begun = [_Due(session, *session.begin_tick(step)) for session, step in due]
         frames: dict[str, Frame] = {}
         for crowd in {id(d.session.crowd): d.session.crowd for d in begun}.values():
@@ -171,6 +190,9 @@ class Runtime:
             for d, stop in zip(mine, stops, strict=True):
                 rows = slice(stop - len(d.session), stop)
                 frames[d.session.id] = d.session.end_tick(block, rows)
+        for name, recording in self._recordings.items():
+            if name in frames:
+                recording.frame(frames[name])
         return [(frames[d.session.id], d.error) for d in begun]
 
     def ask(self, query: Query[AnswerT]) -> AnswerT:

@@ -5,12 +5,16 @@ import json
 import logging
 import os
 import signal
+import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 if TYPE_CHECKING:
+    from stridewire._messages import Open, Opened
     from stridewire_engine.library import Library
+    from stridewire_engine.runtime.runtime import Recorder
     from stridewire_server.server import AnimationServer
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -27,8 +31,15 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 )
 @click.option("--address", default="127.0.0.1:50051", show_default=True, help="Port 0 picks one.")
 @click.option("--insecure", is_flag=True, help="Allow an address that other machines can reach.")
+@click.option(
+    "--record",
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Folder to record every session in, for `stridewire replay`.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object when ready.")
-def serve(libraries: tuple[str, ...], address: str, insecure: bool, as_json: bool) -> None:
+def serve(
+    libraries: tuple[str, ...], address: str, insecure: bool, record: Path | None, as_json: bool
+) -> None:
     """Serve characters over gRPC until SIGTERM or Ctrl-C."""
     for name in _THREADS:  # before numpy is loaded: more threads only fight the tick
         os.environ.setdefault(name, "1")
@@ -40,7 +51,7 @@ def serve(libraries: tuple[str, ...], address: str, insecure: bool, as_json: boo
             "add --insecure to serve there all the same"
         )
     logging.basicConfig(format="%(asctime)s %(levelname)s %(name)s: %(message)s")
-    asyncio.run(_serve(_open(libraries), address, as_json))
+    asyncio.run(_serve(_open(libraries), address, record, as_json))
 
 
 def _open(given: tuple[str, ...]) -> "list[Library]":
@@ -61,16 +72,32 @@ def _open(given: tuple[str, ...]) -> "list[Library]":
     return libraries
 
 
-async def _serve(libraries: "list[Library]", address: str, as_json: bool) -> None:
+async def _serve(
+    libraries: "list[Library]", address: str, record: Path | None, as_json: bool
+) -> None:
     from stridewire_engine.runtime import Runtime
     from stridewire_server.server import AnimationServer
     from stridewire_server.settings import ServerSettings
 
-    server = AnimationServer(Runtime(libraries), ServerSettings(address=address))
+    runtime = Runtime(libraries, record=None if record is None else _recorder(record))
+    server = AnimationServer(runtime, ServerSettings(address=address))
     bound = await server.start()
     _announce(bound, libraries, as_json)
     await _wait_for_signal()
     await _stop(server)
+
+
+def _recorder(folder: Path) -> "Recorder":
+    """Return what opens a file for each session, named by the time and the session."""
+    from stridewire.formats.session_file import SessionWriter
+
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def record(opening: "Open", opened: "Opened") -> SessionWriter:
+        name = f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}-{opened.session}.jsonl"
+        return SessionWriter(folder / name, opening, opened)
+
+    return record
 
 
 def _announce(address: str, libraries: "list[Library]", as_json: bool) -> None:
