@@ -33,6 +33,7 @@ ENGINE_FLOORS = {
     "blending": 2,
     "library": 1,
     "networks": 1,
+    "rigs": 1,
 }
 
 THIRD_PARTY = {

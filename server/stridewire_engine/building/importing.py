@@ -12,11 +12,11 @@ from stridewire.formats.reading import READERS, read_motion
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion.clip import Clip
 from stridewire_engine.building.cleaning import clean, find_loop, gaps, leading_pose, mend_spikes
-from stridewire_engine.building.joint_mapping import map_joints
 from stridewire_engine.building.profiles import Profile, shipped_profiles
 from stridewire_engine.building.retarget import fits, retarget
 from stridewire_engine.building.sidecars import Sidecar, Sidecars, Splits
 from stridewire_engine.building.tagging import tag
+from stridewire_engine.rigs.joint_mapping import map_joints
 
 ACCLAIM_RATE = 120.0
 """Frames per second where neither file nor index says it: most AMC files are CMU's."""
@@ -45,6 +45,8 @@ class Outcome:
     """What was odd about it."""
     profile: str = ""
     """Name of the profile that mapped its joints."""
+    unit: str = ""
+    """Name of its unit of length, else the unit's metres."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,7 @@ def import_files(
     *,
     profiles: Sequence[Profile] = (),
     frame_rate: float | None = None,
+    metres_per_unit: float | None = None,
     jobs: int = 1,
 ) -> Iterator[Outcome]:
     """Import files in order; a bad one is refused and does not stop the others.
@@ -93,6 +96,7 @@ def import_files(
         paths: Files.
         profiles: Tried before the shipped ones.
         frame_rate: Frames per second of all files, instead of what they or their indexes say.
+        metres_per_unit: Of all files, where it cannot be told or they are no human's size.
         jobs: Processes that work at once.
 
     Raises:
@@ -101,7 +105,10 @@ def import_files(
     sidecars = Sidecars()
     names = clip_names(paths)
     work = [_Job(path, names[path], sidecars.of(path)) for path in paths]
-    run = partial(_import_one, (*profiles, *shipped_profiles()), frame_rate)
+    every = (*profiles, *shipped_profiles())
+    run = partial(
+        _import_one, profiles=every, frame_rate=frame_rate, metres_per_unit=metres_per_unit
+    )
     if jobs == 1 or len(work) < _FEW:
         yield from map(run, work)
         return
@@ -117,6 +124,7 @@ def import_file(
     *,
     profiles: Sequence[Profile] = (),
     frame_rate: float | None = None,
+    metres_per_unit: float | None = None,
     sidecar: Sidecar | None = None,
 ) -> Outcome:
     """Import one file.
@@ -126,6 +134,7 @@ def import_file(
         name: Of the clip; the file's by default.
         profiles: Tried before the shipped ones.
         frame_rate: Frames per second, instead of what the file or its index says.
+        metres_per_unit: Where it cannot be told or the figure is no human's size.
         sidecar: What an index says; by default looked up beside the file.
 
     Raises:
@@ -144,12 +153,13 @@ def import_file(
         )
     profile = find_profile(source, profiles or shipped_profiles())
     motion = retarget(source, profile, rate)
+    unit, sized = found_unit(source, motion, metres_per_unit)
     floor = 0.0 if motion.unchanged else None
     clip = clean(name or path.stem, motion.hips, motion.rotations, rate, path.name, floor)
-    notes += motion.notes
+    notes += [*motion.notes, *sized]
     tagged = find_loop(tag(clip, f"{path.stem} {sidecar.words}"))
     notes += ["it loops"] if tagged.loops else []
-    return Outcome(path, tagged, notes=(*source.notes, *notes), profile=profile.name)
+    return Outcome(path, tagged, "", (*source.notes, *notes), profile.name, unit)
 
 
 def _cleaned(source: SourceMotion, frame_rate: float) -> tuple[SourceMotion, list[str]]:
@@ -189,10 +199,20 @@ def clip_names(paths: Sequence[Path]) -> dict[Path, str]:
     return names
 
 
-def _import_one(profiles: Sequence[Profile], frame_rate: float | None, job: _Job) -> Outcome:
+def _import_one(
+    job: _Job,
+    profiles: Sequence[Profile],
+    frame_rate: float | None,
+    metres_per_unit: float | None,
+) -> Outcome:
     try:
         return import_file(
-            job.path, job.name, profiles=profiles, frame_rate=frame_rate, sidecar=job.sidecar
+            job.path,
+            job.name,
+            profiles=profiles,
+            frame_rate=frame_rate,
+            metres_per_unit=metres_per_unit,
+            sidecar=job.sidecar,
         )
     except (ValueError, OSError) as error:
         text = str(error)

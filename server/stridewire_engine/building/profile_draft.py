@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.building.figure import see
-from stridewire_engine.building.joint_mapping import map_joints
-from stridewire_engine.building.joint_names import bare_names
 from stridewire_engine.building.profiles import Profile, spine
 from stridewire_engine.building.rest_pose import rest_rotations
+from stridewire_engine.rigs.joint_mapping import map_joints
+from stridewire_engine.rigs.joint_names import bare_names
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from stridewire._version import __version__
+from stridewire import __version__
 from stridewire.formats.session_file import Advance, SessionFile
 from stridewire_engine.building import open_library
 from stridewire_engine.library import Library

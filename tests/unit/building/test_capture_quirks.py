@@ -14,9 +14,9 @@ from stridewire.motion import kinematics
 from stridewire.motion.clip import Clip
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.building.importing import Outcome, find_profile, import_file
-from stridewire_engine.building.joint_mapping import MappingError
 from stridewire_engine.building.profiles import shipped_profiles
 from stridewire_engine.building.retarget import NotHumanError
+from stridewire_engine.rigs.joint_mapping import MappingError
 
 WALK = "lafan1/clips/walk1_subject1_long.bvh"
 

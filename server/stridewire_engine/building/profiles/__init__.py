@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Quaternions
 from stridewire.motion.skeleton import REFERENCE, Skeleton
-from stridewire_engine.building.joint_names import bare_names
+from stridewire_engine.rigs.joint_names import bare_names
 
 _AXES = {
     sign + letter: factor * np.eye(3)[index]

@@ -11,7 +11,7 @@ import numpy as np
 
 from stridewire.motion.array_types import Floats
 from stridewire.motion.skeleton import Skeleton
-from stridewire_engine.building.joint_names import bare_names, split_name
+from stridewire_engine.rigs.joint_names import bare_names, split_name
 
 _SIDES = {"Left": "left", "Right": "right"}
 _FEET = {"foot", "ankle"}

@@ -5,8 +5,8 @@ import pytest
 from tests.unit.building.figures import source
 
 from stridewire.motion.skeleton import REFERENCE, Skeleton
-from stridewire_engine.building.joint_mapping import MappingError, map_joints
-from stridewire_engine.building.joint_names import bare_names, split_name
+from stridewire_engine.rigs.joint_mapping import MappingError, map_joints
+from stridewire_engine.rigs.joint_names import bare_names, split_name
 
 
 @pytest.mark.parametrize(
