@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
-import stridewire
+import stridewire.motion
 import stridewire_engine
 from stridewire_engine.evaluation import tally
 from stridewire_engine.evaluation.captured import Captured
@@ -91,8 +91,8 @@ def measure_cells(
 def code_hash() -> str:
     """Hash all code of the engine and the client: whatever changes in it, is measured again."""
     digest = hashlib.sha256()
-    for package in (stridewire, stridewire_engine):
-        folder = Path(package.__path__[0])
+    client = Path(stridewire.motion.__file__).parents[1]
+    for folder in (client, Path(stridewire_engine.__file__).parent):
         for source in sorted(folder.rglob("*.py")):
             digest.update(source.read_bytes())
     return digest.hexdigest()[:16]

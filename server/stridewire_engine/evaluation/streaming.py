@@ -124,7 +124,8 @@ def begin(matcher: Matcher, cell: Cell, wanted: Wanted, settings: TickSettings) 
     state = Characters.allocate(count, len(matcher.library.skeleton), len(matcher.schema.channels))
     state.weights[...] = matcher.schema.weights
     lots = [np.random.default_rng(seed).random(PER_SEED) for seed in cell.seeds]
-    state.until_search[:] = np.concatenate(lots)[:count] * settings.search_interval
+    state.stagger[:] = np.concatenate(lots)[:count]
+    state.until_search[:] = state.stagger * settings.search_interval
     state.root_position[:, 0] = _SPACING * np.arange(count)
     state.sim_position[:] = state.root_position[:, ::2]
     heading = np.arctan2(wanted.velocity[0, :, 0], wanted.velocity[0, :, 1])

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from stridewire.motion.array_types import Flags, Floats, Indices, Vectors
+from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 
 MAX_TRAJECTORY_POINTS = 32
 """Most points of a trajectory that a caller gives."""
@@ -85,11 +85,35 @@ class Characters:
     root_speed: Floats = _column(dtype=np.float64)
     """Speed of the root in the last tick, m/s."""
 
-    # the stitcher
+    # the stitcher; see `StitchState`
     offset_hips: Vectors = _column(3)
     offset_hips_velocity: Vectors = _column(3)
     offset_rotations: Vectors = _column("J", 3)
     offset_angular_velocity: Vectors = _column("J", 3)
+    stitch_time: Floats = _column()
+    stitch_deficit: Floats = _column()
+    curve_value: Floats = _column("1 + J")
+    curve_speed: Floats = _column("1 + J")
+    curve_end: Floats = _column("1 + J")
+    curve_axis: Vectors = _column("1 + J", 3)
+    dead_hips: Vectors = _column(3)
+    dead_rotations: Quaternions = _column("J", 4)
+    dead_velocity: Vectors = _column("1 + J", 3)
+    dead_halflife: Vectors = _column("1 + J", 3)
+    toe_shown: Vectors = _column(2, 3, dtype=np.float64)
+    toe_speed: Vectors = _column(2, 3)
+    toe_gap: Vectors = _column(2, 3)
+    toe_gap_speed: Vectors = _column(2, 3)
+    toe_swing: Floats = _column(2)
+    toe_lift: Floats = _column(2)
+    toe_lift_speed: Floats = _column(2)
+    hip_drop: Floats = _column()
+    hip_drop_speed: Floats = _column()
+    legs_shown: Quaternions = _column(6, 4)
+    replant_time: Floats = _column(2, fill=-1)
+    replant_from: Vectors = _column(2, 3)
+    stitched_by: Indices = _column(dtype=np.int8)
+    """Index of the stitcher that hides the last transition; a change counts from the next."""
 
     # the feet: left and right
     planted: Flags = _column(2, dtype=np.bool_)
@@ -117,7 +141,7 @@ class Characters:
     @classmethod
     def allocate(cls, rows: int, joints: int, channels: int) -> "Characters":
         """Return fresh rows."""
-        sizes = {"J": joints, "C": channels}
+        sizes = {"J": joints, "1 + J": 1 + joints, "C": channels}
         arrays = {}
         for column in fields(cls):
             shape = [sizes.get(n, n) for n in column.metadata["shape"]]

@@ -56,10 +56,17 @@ def sample_root(library: Library, at: Moments) -> tuple[Vectors, Floats]:
     return position, yaw_a + weight * (yaw_b.astype(np.float64) - yaw_a)
 
 
-def sample_motion(library: Library, at: Moments) -> Motion:
-    """Return poses and their rates of change, those of the interpolant between both rows."""
+def sample_motion(library: Library, at: Moments, toes: Vectors) -> Motion:
+    """Return poses and their rates of change, those of the interpolant between both rows.
+
+    Args:
+        library: The library.
+        at: Moments.
+        toes: `(F, 2, 3)` toes in every frame of the library, relative to the root.
+    """
     hips, rotations = sample_pose(library, at)
     rate = np.float32(library.frame_rate)
+    toe, toe_after = toes[at.rows], toes[at.rows + 1]
     step = quaternion.multiply(
         library.rotations[at.rows + 1], quaternion.conjugate(library.rotations[at.rows])
     )
@@ -68,6 +75,8 @@ def sample_motion(library: Library, at: Moments) -> Motion:
         rotations,
         (library.hips[at.rows + 1] - library.hips[at.rows]) * rate,
         quaternion.to_scaled_axis(step) * rate,
+        toe + at.weight[:, None, None] * (toe_after - toe),
+        (toe_after - toe) * rate,
     )
 
 

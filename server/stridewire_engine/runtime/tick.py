@@ -1,6 +1,6 @@
 """The tick: one step of all characters that are due, in the order of the design.
 
-Intent, search, playback, stitch, root, feet. Arrays in, arrays out; no loop over characters.
+Intent, search, playback, root, stitch, feet. Arrays in, arrays out; no loop over characters.
 """
 
 from collections.abc import Callable
@@ -13,10 +13,19 @@ from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire_engine.matching.search import Matcher
 from stridewire_engine.runtime import choice, feet, intent, root, sampling
-from stridewire_engine.runtime.characters import Characters
+from stridewire_engine.runtime.characters import Characters, contiguous
 from stridewire_engine.runtime.choice import Jumps, Sets
+from stridewire_engine.runtime.lookahead import LegTracks, legs_ahead
 from stridewire_engine.runtime.settings import TickSettings
-from stridewire_engine.stitchers import STITCHERS, StitchState
+from stridewire_engine.stitchers import (
+    STITCH_COLUMNS,
+    STITCHERS,
+    Roots,
+    Sample,
+    StitchState,
+    stance,
+)
+from stridewire_engine.stitchers.legs import Legs
 
 
 @dataclass(frozen=True)
@@ -68,7 +77,8 @@ class Tick:
         self._settings = settings
         self._max_speed = max_speed
         self._clock = clock
-        self._legs = feet.Legs.of(matcher.library.skeleton)
+        self._legs = Legs.of(matcher.library.skeleton)
+        self._tracks = LegTracks.of(matcher.library, self._legs)
         self._times = np.array(matcher.schema.trajectory_times)
 
     def step(self, state: Characters, dt: Floats, sets: Sets) -> Block:
@@ -102,14 +112,25 @@ class Tick:
         motion = sampling.root_delta(library, before, after)
         contacts = library.contacts[after.nearest]
         timings.note("playback")
-        hips, rotations = _stitch(state, hips, rotations, dt)
-        timings.note("stitch")
         delta = root.advance(state, motion, dt, settings)
         state.root_speed[...] = np.where(
             dt > 0.0, np.hypot(delta[:, 0], delta[:, 2]) / np.maximum(dt, 1e-6), state.root_speed
         )
         timings.note("root")
-        rotations = feet.plant(state, self._legs, hips, rotations, contacts, dt, settings)
+        sample = Sample(
+            hips,
+            rotations,
+            contacts[:, 1::2],
+            Roots(state.root_position, state.root_yaw),
+            state.time <= dt,
+            self._legs,
+            None,
+        )
+        hips, rotations = self._stitch(state, sample, motion, delta, dt)
+        timings.note("stitch")
+        rotations = feet.plant(
+            state, self._legs, hips, rotations, contacts, _stands(state), dt, settings
+        )
         timings.note("feet")
         return self._block(state, delta, hips, rotations, contacts, after, jumps, timings)
 
@@ -121,23 +142,61 @@ class Tick:
         new = sampling.moments(library, jumps.to_clip, jumps.to_time)
         rows.root_offset += sampling.root_velocity(library, old)
         rows.root_offset -= sampling.root_velocity(library, new)
-        source, target = sampling.sample_motion(library, old), sampling.sample_motion(library, new)
-        offsets = _stitch_state(rows)
+        source = sampling.sample_motion(library, old, self._tracks.toes)
+        target = sampling.sample_motion(library, new, self._tracks.toes)
+        offsets, roots = _stitch_state(rows), Roots(rows.root_position, rows.root_yaw)
+        plants = np.array([stitcher.plants_feet for stitcher in STITCHERS])
+        leaves = plants[rows.stitched_by] & ~plants[rows.stitcher]
+        if leaves.any():
+            stance.leave(offsets, source, self._legs, leaves)
         for index, stitcher in enumerate(STITCHERS):
             mine = np.flatnonzero(rows.stitcher == index)
             if len(mine):
                 part = offsets.take(mine)
-                stitcher.begin(part, source.take(mine), target.take(mine))
+                stitcher.begin(part, source.take(mine), target.take(mine), roots.take(mine))
                 offsets.put(mine, part)
             if not stitcher.keeps_root_velocity:
                 rows.root_offset[mine] = 0.0
-        _clear_offsets(rows, jumps.reason == TransitionReason.START)
+        begins = jumps.reason == TransitionReason.START
+        offsets.clear(begins)
+        rows.root_offset[begins] = 0.0
+        # there is nothing to hide where a character begins
+        rows.stitch_time[...] = np.where(begins, np.inf, 0.0)
+        rows.stitched_by[...] = rows.stitcher
         rows.clip[...], rows.clip_time[...] = jumps.to_clip, jumps.to_time
         rows.since_jump[...] = 0.0
         rows.recent[:, 1:], rows.recent[:, 0] = rows.recent[:, :-1].copy(), jumps.to_row
         rows.recent_time[:, 1:] = rows.recent_time[:, :-1].copy()
         rows.recent_time[:, 0] = rows.time
         state.put(jumps.characters, rows)
+
+    def _stitch(
+        self, state: Characters, sample: Sample, motion: Floats, delta: Floats, dt: Floats
+    ) -> tuple[Vectors, Quaternions]:
+        """Let each stitcher turn its characters' sampled poses into the shown ones."""
+        state.stitch_time += dt.astype(np.float32)
+        offsets = _stitch_state(state)
+        hips, rotations = sample.hips, sample.rotations
+        passed = np.maximum(dt, 1e-6)[:, None]
+        pull = (delta[:, [0, 2, 3]] - motion) / passed - state.root_offset
+        small_dt = dt.astype(np.float32)
+        for index, stitcher in enumerate(STITCHERS):
+            mine = contiguous(np.flatnonzero(state.stitched_by == index))
+            if not isinstance(mine, slice) and not len(mine):
+                continue
+            part, seen = offsets.take(mine), sample.take(mine)
+            if stitcher.looks_ahead:
+                times = np.array(stitcher.looks_ahead)
+                rows = state.take(mine)
+                halflife = self._settings.root_halflife
+                seen = seen._replace(
+                    ahead=legs_ahead(
+                        rows, self._matcher.library, self._tracks, times, pull[mine], halflife
+                    )
+                )
+            hips[mine], rotations[mine] = stitcher.apply(part, seen, small_dt[mine])
+            offsets.put(mine, part)
+        return hips, rotations
 
     def _block(
         self,
@@ -181,43 +240,13 @@ class Tick:
         )
 
 
-def _stitch(
-    state: Characters, hips: Vectors, rotations: Quaternions, dt: Floats
-) -> tuple[Vectors, Quaternions]:
-    """Let each stitcher turn its characters' sampled poses into the shown ones."""
-    small_dt = dt.astype(np.float32)
-    offsets = _stitch_state(state)
-    for index, stitcher in enumerate(STITCHERS):
-        mine = np.flatnonzero(state.stitcher == index)
-        if len(mine) == len(state):
-            return stitcher.apply(offsets, hips, rotations, small_dt)
-        if len(mine):
-            part = offsets.take(mine)
-            hips[mine], rotations[mine] = stitcher.apply(
-                part, hips[mine], rotations[mine], small_dt[mine]
-            )
-            offsets.put(mine, part)
-    return hips, rotations
+def _stands(state: Characters) -> Flags:
+    """Tell whose stitcher plants the feet."""
+    return np.array([stitcher.plants_feet for stitcher in STITCHERS])[state.stitched_by]
 
 
 def _stitch_state(state: Characters) -> StitchState:
-    return StitchState(
-        state.offset_hips,
-        state.offset_hips_velocity,
-        state.offset_rotations,
-        state.offset_angular_velocity,
-    )
-
-
-def _clear_offsets(rows: Characters, which: Flags) -> None:
-    for offset in (
-        rows.offset_hips,
-        rows.offset_hips_velocity,
-        rows.offset_rotations,
-        rows.offset_angular_velocity,
-        rows.root_offset,
-    ):
-        offset[which] = 0.0
+    return StitchState(**{name: getattr(state, name) for name in STITCH_COLUMNS})
 
 
 class _Timings:

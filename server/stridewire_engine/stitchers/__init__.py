@@ -6,10 +6,36 @@ interrupted at any frame by the next `begin`.
 """
 
 from stridewire_engine.stitchers.cut import Cut
+from stridewire_engine.stitchers.dead_blend import DeadBlend
 from stridewire_engine.stitchers.inertialization import SpringInertialization
-from stridewire_engine.stitchers.stitcher import Motion, Stitcher, StitchState
+from stridewire_engine.stitchers.quintic import QuinticInertialization
+from stridewire_engine.stitchers.stance import Stance
+from stridewire_engine.stitchers.stitcher import (
+    STITCH_COLUMNS,
+    LegsAhead,
+    Motion,
+    Roots,
+    Sample,
+    Stitcher,
+    StitchState,
+)
 
-__all__ = ["STITCHERS", "Motion", "StitchState", "Stitcher"]
+__all__ = [
+    "STITCHERS",
+    "STITCH_COLUMNS",
+    "LegsAhead",
+    "Motion",
+    "Roots",
+    "Sample",
+    "StitchState",
+    "Stitcher",
+]
 
-STITCHERS: tuple[Stitcher, ...] = (SpringInertialization(), Cut())
+STITCHERS: tuple[Stitcher, ...] = (
+    SpringInertialization(),
+    Cut(),
+    QuinticInertialization(),
+    DeadBlend(),
+    Stance(),
+)
 """All stitchers, the default first; a character holds an index into this tuple."""

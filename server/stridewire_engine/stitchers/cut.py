@@ -1,7 +1,7 @@
 """The stitcher `none`: the new clip at once, seam and all."""
 
 from stridewire.motion.array_types import Floats, Quaternions, Vectors
-from stridewire_engine.stitchers.stitcher import Motion, StitchState
+from stridewire_engine.stitchers.stitcher import Motion, Roots, Sample, StitchState
 
 
 class Cut:
@@ -10,14 +10,19 @@ class Cut:
     name = "none"
     settled_s = 0.0
     keeps_root_velocity = False
+    plants_feet = False
+    looks_ahead: tuple[float, ...] = ()
 
-    def begin(self, state: StitchState, source: Motion, target: Motion) -> None:
+    def begin(self, state: StitchState, source: Motion, target: Motion, roots: Roots) -> None:
         """Forget what was added."""
-        for offset in (state.hips, state.hips_velocity, state.rotations, state.angular_velocity):
+        for offset in (
+            state.offset_hips,
+            state.offset_hips_velocity,
+            state.offset_rotations,
+            state.offset_angular_velocity,
+        ):
             offset[...] = 0.0
 
-    def apply(
-        self, state: StitchState, hips: Vectors, rotations: Quaternions, dt: Floats
-    ) -> tuple[Vectors, Quaternions]:
+    def apply(self, state: StitchState, sample: Sample, dt: Floats) -> tuple[Vectors, Quaternions]:
         """Return the sampled pose."""
-        return hips, rotations
+        return sample.hips, sample.rotations

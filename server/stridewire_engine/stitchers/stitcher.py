@@ -1,9 +1,12 @@
 """The interface of stitchers and the arrays that they keep for each character."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import NamedTuple, Protocol
 
-from stridewire.motion.array_types import Floats, Indices, Quaternions, Vectors
+import numpy as np
+
+from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
+from stridewire_engine.stitchers.legs import Legs
 
 
 class Motion(NamedTuple):
@@ -17,40 +20,170 @@ class Motion(NamedTuple):
     """`(N, 3)` m/s."""
     angular_velocity: Vectors
     """`(N, J, 3)` rad/s in the parent's space."""
+    toes: Vectors
+    """`(N, 2, 3)` left and right toe, metres."""
+    toes_velocity: Vectors
+    """`(N, 2, 3)` m/s, without the root's."""
 
     def take(self, rows: Indices) -> "Motion":
         """Return some characters' motion."""
         return Motion(*(array[rows] for array in self))
 
 
-@dataclass
-class StitchState:
-    """What is added to the sampled pose, for N characters; plain arrays, changed in place."""
+class Roots(NamedTuple):
+    """Where N characters are, float64."""
+
+    position: Vectors
+    """`(N, 3)`."""
+    yaw: Floats
+    """`(N,)`."""
+
+    def take(self, rows: slice | Indices) -> "Roots":
+        """Return some characters' roots."""
+        return Roots(self.position[rows], self.yaw[rows])
+
+    def to_world(self, local: Vectors) -> Vectors:
+        """Return points `(N, K, 3)` of the roots' frames in the world."""
+        return turn_to_world(local, self.yaw) + self.position[:, None]
+
+    def to_root(self, world: Vectors) -> Vectors:
+        """Return points `(N, K, 3)` of the world in the roots' frames."""
+        return turn_to_root(world - self.position[:, None], self.yaw)
+
+
+class LegsAhead(NamedTuple):
+    """Where the clips' legs will be at K times ahead, in the frame of the root as it is now."""
+
+    times: Floats
+    """`(K,)` seconds, ascending."""
+    hips: Vectors
+    """`(N, K, 2, 3)` hip joints."""
+    ankles: Vectors
+    """`(N, K, 2, 3)`."""
+    toes: Vectors
+    """`(N, K, 2, 3)`."""
+    contacts: Flags
+    """`(N, K, 2)` whether the toes are planted."""
+
+    def take(self, rows: slice | Indices) -> "LegsAhead":
+        """Return some characters' legs."""
+        return LegsAhead(
+            self.times,
+            self.hips[rows],
+            self.ankles[rows],
+            self.toes[rows],
+            self.contacts[rows],
+        )
+
+
+class Sample(NamedTuple):
+    """What the clips show now, and under which root, for N characters."""
 
     hips: Vectors
+    """`(N, 3)` relative to the root."""
+    rotations: Quaternions
+    """`(N, J, 4)` local."""
+    contacts: Flags
+    """`(N, 2)` whether the toes are planted."""
+    roots: Roots
+    """Already moved."""
+    begins: Flags
+    """`(N,)` whether the character is new: nothing was shown before."""
+    legs: Legs
+    """Of the skeleton."""
+    ahead: LegsAhead | None
+    """For stitchers that look ahead."""
+
+    def take(self, rows: slice | Indices) -> "Sample":
+        """Return some characters' sample."""
+        return Sample(
+            self.hips[rows],
+            self.rotations[rows],
+            self.contacts[rows],
+            self.roots.take(rows),
+            self.begins[rows],
+            self.legs,
+            None if self.ahead is None else self.ahead.take(rows),
+        )
+
+
+@dataclass
+class StitchState:
+    """What stitchers keep for N characters; plain arrays, changed in place.
+
+    The offsets always tell what is added to the sampled pose now and how it changes, whoever adds
+    it, so that any stitcher can take over from any other.
+    """
+
+    offset_hips: Vectors
     """`(N, 3)` offset of the hips, metres."""
-    hips_velocity: Vectors
+    offset_hips_velocity: Vectors
     """`(N, 3)` its rate of change."""
-    rotations: Vectors
+    offset_rotations: Vectors
     """`(N, J, 3)` offsets as scaled axes, turned after the sampled rotation, radians."""
-    angular_velocity: Vectors
+    offset_angular_velocity: Vectors
     """`(N, J, 3)` rate of change of the scaled axes, rad/s."""
+    stitch_time: Floats
+    """`(N,)` seconds since the last transition."""
+    stitch_deficit: Floats
+    """`(N,)` seconds that interruptions have cost."""
+    curve_value: Floats
+    """`(N, 1 + J)` offsets of hips and joints along their axes, at the transition."""
+    curve_speed: Floats
+    """`(N, 1 + J)` their rate of change then."""
+    curve_end: Floats
+    """`(N, 1 + J)` seconds after which nothing is left of them."""
+    curve_axis: Vectors
+    """`(N, 1 + J, 3)` unit."""
+    dead_hips: Vectors
+    """`(N, 3)` as shown at the transition."""
+    dead_rotations: Quaternions
+    """`(N, J, 4)` as shown at the transition."""
+    dead_velocity: Vectors
+    """`(N, 1 + J, 3)` of hips and joints then, m/s and rad/s."""
+    dead_halflife: Vectors
+    """`(N, 1 + J, 3)` seconds, of each axis of the velocity."""
+    toe_shown: Vectors
+    """`(N, 2, 3)` world position of the toes in the last frame, float64, whoever planted them."""
+    toe_speed: Vectors
+    """`(N, 2, 3)` their world velocity, m/s."""
+    toe_gap: Vectors
+    """`(N, 2, 3)` from the clip's toes to the shown ones, in the world."""
+    toe_gap_speed: Vectors
+    """`(N, 2, 3)` its rate of change."""
+    toe_swing: Floats
+    """`(N, 2)` how far a swing has got under way, 0 to 1."""
+    toe_lift: Floats
+    """`(N, 2)` height added to toes that swing."""
+    toe_lift_speed: Floats
+    """`(N, 2)`."""
+    hip_drop: Floats
+    """`(N,)` metres that the hips are lowered by."""
+    hip_drop_speed: Floats
+    """`(N,)`."""
+    legs_shown: Quaternions
+    """`(N, 6, 4)` rotations of both thighs, shins and feet, where the stitcher bent them."""
+    replant_time: Floats
+    """`(N, 2)` seconds since a foot that stood off its place was lifted; below 0 if none was."""
+    replant_from: Vectors
+    """`(N, 2, 3)` gap at that time."""
 
     def take(self, rows: slice | Indices) -> "StitchState":
         """Return the rows: a view for a slice, a copy for indices."""
-        return StitchState(
-            self.hips[rows],
-            self.hips_velocity[rows],
-            self.rotations[rows],
-            self.angular_velocity[rows],
-        )
+        return StitchState(**{name: array[rows] for name, array in vars(self).items()})
 
     def put(self, rows: slice | Indices, part: "StitchState") -> None:
         """Write rows back."""
-        self.hips[rows] = part.hips
-        self.hips_velocity[rows] = part.hips_velocity
-        self.rotations[rows] = part.rotations
-        self.angular_velocity[rows] = part.angular_velocity
+        for name, array in vars(self).items():
+            array[rows] = getattr(part, name)
+
+    def clear(self, rows: Flags) -> None:
+        """Forget everything about some characters."""
+        for name, array in vars(self).items():
+            array[rows] = -1.0 if name == "replant_time" else 0.0
+
+
+STITCH_COLUMNS = tuple(field.name for field in fields(StitchState))
 
 
 class Stitcher(Protocol):
@@ -62,18 +195,33 @@ class Stitcher(Protocol):
     """So long after a transition, what is shown is the clip again, as good as."""
     keeps_root_velocity: bool
     """Whether the root's velocity, too, goes over without a step."""
+    plants_feet: bool
+    """Whether it keeps planted feet where they are; then nobody else needs to."""
+    looks_ahead: tuple[float, ...]
+    """Times ahead, in seconds, at which it wants to know where legs will be."""
 
-    def begin(self, state: StitchState, source: Motion, target: Motion) -> None:
+    def begin(self, state: StitchState, source: Motion, target: Motion, roots: Roots) -> None:
         """Take over at a jump, for characters that all jump now.
 
         Args:
-            state: What was added to the source; changed in place to what is to be added to the
-                target.
+            state: Of what was shown of the source; changed in place.
             source: The clip that was playing, at the moment of the jump.
             target: The clip that comes, at its own moment.
+            roots: Where the characters are.
         """
 
-    def apply(
-        self, state: StitchState, hips: Vectors, rotations: Quaternions, dt: Floats
-    ) -> tuple[Vectors, Quaternions]:
+    def apply(self, state: StitchState, sample: Sample, dt: Floats) -> tuple[Vectors, Quaternions]:
         """Advance by `dt` `(N,)` and return the shown hips `(N, 3)` and rotations `(N, J, 4)`."""
+
+
+def turn_to_world(vectors: Vectors, yaw: Floats) -> Vectors:
+    """Turn vectors `(N, ..., 3)` of the roots' frames by their yaws `(N,)`."""
+    shape = (-1, *(1,) * (vectors.ndim - 2))
+    sine, cosine = np.sin(yaw).reshape(shape), np.cos(yaw).reshape(shape)
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    return np.stack([x * cosine + z * sine, y + 0.0 * sine, z * cosine - x * sine], axis=-1)
+
+
+def turn_to_root(vectors: Vectors, yaw: Floats) -> Vectors:
+    """Turn vectors `(N, ..., 3)` of the world into the frames of roots of yaws `(N,)`."""
+    return turn_to_world(vectors, -yaw)

@@ -4,88 +4,86 @@ import numpy as np
 import pytest
 
 from stridewire.motion import quaternion
-from stridewire_engine.stitchers import STITCHERS, Motion, StitchState
+from stridewire_engine.stitchers import STITCHERS, Stitcher
 from stridewire_engine.stitchers.cut import Cut
+from stridewire_engine.stitchers.dead_blend import DeadBlend
 from stridewire_engine.stitchers.inertialization import SpringInertialization
+from stridewire_engine.stitchers.quintic import QuinticInertialization, quintic
+from unit.stitchers.motions import ROOTS, N, advance, angles, empty, random_motion, sample_of
 
-N, J = 5, 22
 TINY = np.full(N, 1e-6)
+CONTINUOUS: tuple[Stitcher, ...] = (SpringInertialization(), DeadBlend())
 
 
-def empty() -> StitchState:
-    """Return a state without offsets, in float64 so that rates can be measured."""
-    return StitchState(np.zeros((N, 3)), np.zeros((N, 3)), np.zeros((N, J, 3)), np.zeros((N, J, 3)))
+def by_name(stitcher: Stitcher) -> str:
+    """Return a name for a parameter."""
+    return stitcher.name
 
 
-def random_motion(rng: np.random.Generator, spread: float = 0.5) -> Motion:
-    """Return arbitrary poses and rates."""
-    return Motion(
-        rng.normal(size=(N, 3)),
-        quaternion.from_scaled_axis(rng.normal(scale=spread, size=(N, J, 3))),
-        rng.normal(size=(N, 3)),
-        rng.normal(size=(N, J, 3)),
-    )
+def shown(stitcher: Stitcher, state: object, motion: object, dt: np.ndarray) -> tuple:
+    """Let time pass as the tick does, and apply."""
+    state.stitch_time += dt  # type: ignore[attr-defined]
+    return stitcher.apply(state, sample_of(motion), dt)  # type: ignore[arg-type]
 
 
-def advance(motion: Motion, dt: float) -> Motion:
-    """Go on along the motion's rates."""
-    turned = quaternion.multiply(
-        quaternion.from_scaled_axis(motion.angular_velocity * dt), motion.rotations
-    )
-    return motion._replace(hips=motion.hips + motion.hips_velocity * dt, rotations=turned)
-
-
-def angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the rotation vectors from b to a."""
-    return quaternion.to_scaled_axis(quaternion.multiply(a, quaternion.conjugate(b)))
-
-
-def test_value_and_rate_continue(rng: np.random.Generator) -> None:
-    """Right after a jump the shown pose is the old one, moving on at the old rate."""
-    stitcher, state = SpringInertialization(), empty()
-    source, target = random_motion(rng), random_motion(rng)
-    stitcher.begin(state, source, target)
-    hips, rotations = stitcher.apply(state, target.hips, target.rotations, np.zeros(N))
+@pytest.mark.parametrize("stitcher", [*CONTINUOUS, QuinticInertialization()], ids=by_name)
+def test_values_continue(rng: np.random.Generator, stitcher: Stitcher) -> None:
+    """Right after a jump the shown pose is the old one."""
+    state, source, target = empty(), random_motion(rng), random_motion(rng)
+    stitcher.begin(state, source, target, ROOTS)
+    hips, rotations = shown(stitcher, state, target, np.zeros(N))
     assert np.allclose(hips, source.hips, atol=1e-12)
     assert np.allclose(np.abs(np.sum(rotations * source.rotations, axis=-1)), 1.0, atol=1e-12)
-    soon = advance(target, TINY[0])
-    later_hips, _ = stitcher.apply(state, soon.hips, soon.rotations, TINY)
-    assert np.allclose((later_hips - hips) / TINY[0], source.hips_velocity, atol=1e-2)
 
 
-def test_angular_rate_continues(rng: np.random.Generator) -> None:
-    """The angular velocity goes on, too, even across large differences."""
-    stitcher, state = SpringInertialization(), empty()
-    source, target = random_motion(rng), random_motion(rng)
-    stitcher.begin(state, source, target)
-    soon = advance(target, TINY[0])
-    _, before = stitcher.apply(state, target.hips, target.rotations, np.zeros(N))
-    _, after = stitcher.apply(state, soon.hips, soon.rotations, TINY)
+@pytest.mark.parametrize("stitcher", CONTINUOUS, ids=by_name)
+def test_rates_continue(rng: np.random.Generator, stitcher: Stitcher) -> None:
+    """What is shown moves on at the old rates, even across large differences."""
+    state, source, target = empty(), random_motion(rng), random_motion(rng)
+    stitcher.begin(state, source, target, ROOTS)
+    hips, before = shown(stitcher, state, target, np.zeros(N))
+    later, after = shown(stitcher, state, advance(target, TINY[0]), TINY)
+    assert np.allclose((later - hips) / TINY[0], source.hips_velocity, atol=1e-2)
     assert np.allclose(angles(after, before) / TINY[0], source.angular_velocity, atol=1e-2)
 
 
-def test_a_second_jump_in_the_middle_continues_what_is_shown(rng: np.random.Generator) -> None:
-    """An interruption takes over the shown pose, offsets and all, not the clip's."""
-    stitcher, state = SpringInertialization(), empty()
-    first, second, third = (random_motion(rng) for _ in range(3))
-    stitcher.begin(state, first, second)
-    shown_hips, shown = stitcher.apply(state, second.hips, second.rotations, np.full(N, 0.05))
-    stitcher.begin(state, second, third)
-    hips, rotations = stitcher.apply(state, third.hips, third.rotations, np.zeros(N))
-    assert np.allclose(hips, shown_hips, atol=1e-12)
-    assert np.allclose(np.abs(np.sum(rotations * shown, axis=-1)), 1.0, atol=1e-12)
+@pytest.mark.parametrize("first", [*CONTINUOUS, QuinticInertialization()], ids=by_name)
+@pytest.mark.parametrize("second", [*CONTINUOUS, QuinticInertialization()], ids=by_name)
+def test_any_stitcher_takes_over_from_any_other(
+    rng: np.random.Generator, first: Stitcher, second: Stitcher
+) -> None:
+    """A jump in the middle of a transition continues what is shown, offsets and all."""
+    state = empty()
+    one, two, three = (random_motion(rng) for _ in range(3))
+    first.begin(state, one, two, ROOTS)
+    before_hips, before = shown(first, state, two, np.full(N, 0.05))
+    state.stitch_time[...] = 0.0
+    second.begin(state, two, three, ROOTS)
+    hips, rotations = shown(second, state, three, np.zeros(N))
+    assert np.allclose(hips, before_hips, atol=1e-12)
+    assert np.allclose(np.abs(np.sum(rotations * before, axis=-1)), 1.0, atol=1e-9)
 
 
-def test_offsets_die_out(rng: np.random.Generator) -> None:
+def test_springs_die_out(rng: np.random.Generator) -> None:
     """After `settled_s` about a tenth of an offset at rest is left, after a second nothing."""
     stitcher, state = SpringInertialization(), empty()
     still = random_motion(rng)._replace(hips_velocity=np.zeros((N, 3)))
     target = still._replace(hips=still.hips + 1.0)
-    stitcher.begin(state, still, target)
-    hips, _ = stitcher.apply(state, target.hips, target.rotations, np.full(N, stitcher.settled_s))
+    stitcher.begin(state, still, target, ROOTS)
+    hips, _ = shown(stitcher, state, target, np.full(N, stitcher.settled_s))
     assert np.allclose(np.abs(hips - target.hips), 0.1, atol=0.01)
-    hips, _ = stitcher.apply(state, target.hips, target.rotations, np.ones(N))
+    hips, _ = shown(stitcher, state, target, np.ones(N))
     assert np.allclose(hips, target.hips, atol=1e-4)
+
+
+@pytest.mark.parametrize("stitcher", [DeadBlend(), QuinticInertialization()], ids=by_name)
+def test_ends_in_time(rng: np.random.Generator, stitcher: Stitcher) -> None:
+    """After `settled_s` the clip is shown, exactly."""
+    state, source, target = empty(), random_motion(rng), random_motion(rng)
+    stitcher.begin(state, source, target, ROOTS)
+    hips, rotations = shown(stitcher, state, target, np.full(N, stitcher.settled_s))
+    assert np.allclose(hips, target.hips, atol=1e-9)
+    assert np.allclose(angles(rotations, target.rotations), 0.0, atol=1e-9)
 
 
 def test_the_step_does_not_matter(rng: np.random.Generator) -> None:
@@ -93,44 +91,81 @@ def test_the_step_does_not_matter(rng: np.random.Generator) -> None:
     stitcher = SpringInertialization()
     source, target = random_motion(rng), random_motion(rng)
     once, often = empty(), empty()
-    stitcher.begin(once, source, target)
-    stitcher.begin(often, source, target)
-    hips, _ = stitcher.apply(once, target.hips, target.rotations, np.full(N, 0.05))
+    stitcher.begin(once, source, target, ROOTS)
+    stitcher.begin(often, source, target, ROOTS)
+    hips, _ = shown(stitcher, once, target, np.full(N, 0.05))
     for _ in range(5):
-        again, _ = stitcher.apply(often, target.hips, target.rotations, np.full(N, 0.01))
+        again, _ = shown(stitcher, often, target, np.full(N, 0.01))
     assert np.allclose(hips, again, atol=1e-12)
 
 
 def test_the_long_way_round_is_never_taken() -> None:
     """A difference of 350 degrees is an offset of 10."""
     stitcher, state = SpringInertialization(), empty()
-    identity = quaternion.identity(N, J, dtype=np.float64)
-    zero = np.zeros((N, 3))
-    turned = np.tile(quaternion.from_axis_angle((0.0, 1.0, 0.0), np.radians(350.0)), (N, J, 1))
-    still = Motion(zero, identity, zero, np.zeros((N, J, 3)))
-    stitcher.begin(state, still._replace(rotations=turned), still)
-    assert np.allclose(np.linalg.norm(state.rotations, axis=-1), np.radians(10.0))
+    motion = random_motion(np.random.default_rng(1))
+    joints = motion.rotations.shape[1]
+    identity = quaternion.identity(N, joints, dtype=np.float64)
+    turned = np.tile(quaternion.from_axis_angle((0.0, 1.0, 0.0), np.radians(350.0)), (N, joints, 1))
+    still = motion._replace(rotations=identity, angular_velocity=np.zeros((N, joints, 3)))
+    stitcher.begin(state, still._replace(rotations=turned), still, ROOTS)
+    assert np.allclose(np.linalg.norm(state.offset_rotations, axis=-1), np.radians(10.0))
+
+
+def test_a_quintic_starts_and_ends_as_asked() -> None:
+    """Value and slope at the start are those given, at the end both are nothing, and it falls."""
+    x0, v0, end = np.array([0.5, 1.0]), np.array([-2.0, 0.0]), np.array([0.4, 0.3])
+    assert np.allclose(quintic(x0, v0, end, np.zeros(2)), (x0, v0))
+    value, slope = quintic(x0, v0, end, end - 1e-9)
+    assert np.allclose(value, 0.0, atol=1e-9)
+    assert np.allclose(slope, 0.0, atol=1e-6)
+    middle = np.stack([quintic(x0, v0, end, s * end)[0] for s in np.linspace(0, 1, 30)])
+    assert np.all(np.diff(middle, axis=0) <= 1e-12)
+
+
+def test_interruptions_shorten_what_follows(rng: np.random.Generator) -> None:
+    """A quintic that was interrupted after 0.1 s leaves the next one less time."""
+    stitcher, state = QuinticInertialization(0.4), empty()
+    one, two = random_motion(rng), random_motion(rng)
+    stitcher.begin(state, one, two, ROOTS)
+    first = state.curve_end.max()
+    shown(stitcher, state, two, np.full(N, 0.1))
+    stitcher.begin(state, two, one, ROOTS)
+    assert first == pytest.approx(0.4)
+    assert state.curve_end.max() < 0.3
+
+
+def test_dead_blending_never_overshoots(rng: np.random.Generator) -> None:
+    """Hips at rest go straight to the new clip's, never beyond: no offset changes its sign."""
+    stitcher, state = DeadBlend(), empty()
+    source = random_motion(rng)._replace(hips_velocity=np.zeros((N, 3)))
+    target = random_motion(rng)
+    stitcher.begin(state, source, target, ROOTS)
+    begin = source.hips - target.hips
+    for _ in range(30):
+        hips, _ = shown(stitcher, state, target, np.full(N, 1 / 60))
+        part = (hips - target.hips) / begin
+        assert np.all((part >= -1e-9) & (part <= 1.0 + 1e-9))
 
 
 def test_none_hides_nothing(rng: np.random.Generator) -> None:
     """The stitcher `none` forgets every offset and shows the clip."""
     state = empty()
-    SpringInertialization().begin(state, random_motion(rng), random_motion(rng))
+    SpringInertialization().begin(state, random_motion(rng), random_motion(rng), ROOTS)
     target = random_motion(rng)
     cut = Cut()
-    cut.begin(state, random_motion(rng), target)
-    hips, rotations = cut.apply(state, target.hips, target.rotations, TINY)
+    cut.begin(state, random_motion(rng), target, ROOTS)
+    hips, rotations = shown(cut, state, target, TINY)
     assert np.array_equal(hips, target.hips)
     assert np.array_equal(rotations, target.rotations)
-    assert not state.rotations.any()
+    assert not state.offset_rotations.any()
 
 
-@pytest.mark.parametrize("stitcher", STITCHERS, ids=lambda stitcher: stitcher.name)
-def test_float32_stays_float32(rng: np.random.Generator, stitcher: object) -> None:
+@pytest.mark.parametrize("stitcher", STITCHERS, ids=by_name)
+def test_float32_stays_float32(rng: np.random.Generator, stitcher: Stitcher) -> None:
     """The tick's float32 is kept."""
-    state = StitchState(*(a.astype(np.float32) for a in vars(empty()).values()))
-    source, target = (Motion(*(a.astype(np.float32) for a in random_motion(rng))) for _ in range(2))
-    stitcher.begin(state, source, target)  # type: ignore[attr-defined]
+    state = empty(np.float32)
+    source, target = random_motion(rng, dtype=np.float32), random_motion(rng, dtype=np.float32)
+    stitcher.begin(state, source, target, ROOTS)
     dt = np.full(N, 1 / 60, np.float32)
-    hips, rotations = stitcher.apply(state, target.hips, target.rotations, dt)  # type: ignore[attr-defined]
+    hips, rotations = stitcher.apply(state, sample_of(target), dt)
     assert hips.dtype == rotations.dtype == np.float32
