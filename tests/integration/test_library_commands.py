@@ -39,7 +39,7 @@ def test_build_says_of_each_file_what_became_of_it(folder: Path, tmp_path: Path)
     """Good files are imported, bad ones named with the reason, and the library opens."""
     result = run("build", folder, "--out", tmp_path / "lib", "--licence", "mine", "--jobs", "1")
     assert result.exit_code == 0, result.output
-    assert "imported 3 of 5 files, refused 2" in result.output
+    assert "imported 3 of 5 files (2 in cm, 1 in inch), refused 2" in result.output
     assert f"refused: {folder / 'broken.bvh'}" in result.output
     assert "expected at least 0.25 s" in result.output
     assert "zup.bvh: Z is up" in result.output
@@ -48,6 +48,18 @@ def test_build_says_of_each_file_what_became_of_it(folder: Path, tmp_path: Path)
     assert facts["clips"] == 6
     assert facts["licence"] == "mine"
     assert facts["seconds_by_tag"]["walk"] > 0.0
+
+
+def test_a_giant_needs_its_unit(tmp_path: Path) -> None:
+    """Refused with the option that helps; with it imported; an unknown unit is a usage error."""
+    giant = tmp_path / "giant.bvh"
+    write_source_bvh(giant, source(scale=185.0))
+    refused = run("build", giant, "--out", tmp_path / "lib")
+    assert "--unit" in refused.output
+    assert refused.exit_code == 1
+    assert run("build", giant, "--out", tmp_path / "lib", "--unit", "cm").exit_code == 0
+    assert run("build", giant, "--out", tmp_path / "lib", "--unit", "cow").exit_code == 2
+    assert "--unit" in run("profile", giant).output
 
 
 def test_build_without_a_single_good_file_fails(folder: Path, tmp_path: Path) -> None:

@@ -12,7 +12,8 @@ from stridewire.motion.array_types import Vectors
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.building.cleaning import leading_pose, mend_spikes
 from stridewire_engine.building.figure import NEXT, SIDES, Figure, direction, see
-from stridewire_engine.building.importing import ACCLAIM_RATE, find_profile
+from stridewire_engine.building.importing import ACCLAIM_RATE
+from stridewire_engine.building.onto_reference import find_profile
 from stridewire_engine.building.profiles import shipped_profiles
 from stridewire_engine.building.retarget import retarget
 from stridewire_engine.building.sidecars import Sidecars

@@ -1,18 +1,24 @@
-"""`stridewire convert`: motion files from one format, rate, unit or up axis to another."""
+"""`stridewire convert`: motion files from one format, rate, unit, axis or skeleton to another."""
 
 from dataclasses import replace
 from pathlib import Path
 
 import click
 
+from stridewire._errors import StridewireError
 from stridewire.formats.bvh_writing import write_source_bvh
-from stridewire.formats.conversion import UNITS, scaled, turned_up, with_rate
+from stridewire.formats.conversion import scaled, turned_up, with_rate
 from stridewire.formats.npz import write_npz
 from stridewire.formats.reading import read_motion
+from stridewire.formats.retargeting import find_retargeting
 from stridewire.formats.source_motion import SourceMotion
+from stridewire.formats.units import UNITS, parse_unit
 
 _WRITERS = {".bvh": write_source_bvh, ".npz": write_npz}
 _ACCLAIM_RATE = 120.0
+
+
+_UNIT_HELP = f"({', '.join(UNITS)}, or metres)"
 
 
 @click.command()
@@ -22,10 +28,11 @@ _ACCLAIM_RATE = 120.0
 @click.argument("out", metavar="OUT", type=click.Path(dir_okay=False, path_type=Path))
 @click.option("--rate", type=click.FloatRange(1.0, 1000.0), help="Frames per second of OUT.")
 @click.option("--true-rate", type=click.FloatRange(1.0, 1000.0), help="Of IN, if it is wrong.")
-@click.option("--from-unit", type=click.Choice(list(UNITS)), help="Of IN; AMC files know theirs.")
-@click.option("--to-unit", type=click.Choice(list(UNITS)), help="Of OUT; IN's by default.")
+@click.option("--unit", "from_unit", help=f"Of IN {_UNIT_HELP}; AMC know theirs.")
+@click.option("--to-unit", help=f"Of OUT {_UNIT_HELP}; IN's by default.")
 @click.option("--from-up", type=click.Choice(["Y", "Z"]), default="Y", show_default=True)
 @click.option("--up", type=click.Choice(["Y", "Z"]), help="Which axis points up in OUT.")
+@click.option("--skeleton", help="Bring it onto this skeleton: `reference`.")
 def convert(
     motion: Path,
     out: Path,
@@ -35,23 +42,30 @@ def convert(
     to_unit: str | None,
     from_up: str,
     up: str | None,
+    skeleton: str | None,
 ) -> None:
-    """Convert a motion file (BVH, AMC with its ASF, npz) on its own skeleton to BVH or npz.
+    """Convert a motion file (BVH, AMC with its ASF, npz) to BVH or npz.
 
-    To bring it onto the reference skeleton, import it with `stridewire library build`.
+    On its own skeleton whatever it is, or brought onto the reference skeleton as `stridewire
+    library build` does it: Y up, on the ground, in centimetres unless --to-unit says another.
     """
     writer = _WRITERS.get(out.suffix.lower())
     if writer is None:
         raise click.UsageError(f"cannot write {out.name}; expected {' or '.join(_WRITERS)}")
     try:
         source = _with_true_rate(read_motion(motion), true_rate)
+        given = parse_unit(from_unit) if from_unit else None
+        source = source if given is None else replace(source, metres_per_unit=given)
+        if skeleton is not None:
+            source = find_retargeting(skeleton)(turned_up(source, from_up, "Y"), given)
+            from_up = "Y"
         source = turned_up(source, from_up, up or from_up)
         if to_unit is not None:
-            source = scaled(source, _factor(source, from_unit, to_unit))
+            source = scaled(source, _metres(source) / parse_unit(to_unit))
         if rate is not None:
             source = with_rate(source, rate)
         writer(out, source)
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, StridewireError) as error:
         raise click.ClickException(str(error)) from None
     for note in source.notes:
         click.echo(f"note: {motion}: {note}", err=True)
@@ -68,8 +82,7 @@ def _with_true_rate(source: SourceMotion, true_rate: float | None) -> SourceMoti
     return source if true_rate is None else replace(source, frame_rate=true_rate)
 
 
-def _factor(source: SourceMotion, from_unit: str | None, to_unit: str) -> float:
-    metres = UNITS[from_unit] if from_unit else source.metres_per_unit
-    if metres is None:
-        raise click.UsageError(f"{source.path} does not say its unit; give it with --from-unit")
-    return metres / UNITS[to_unit]
+def _metres(source: SourceMotion) -> float:
+    if source.metres_per_unit is None:
+        raise click.UsageError(f"{source.path} does not say its unit; give it with --unit")
+    return source.metres_per_unit

@@ -41,7 +41,8 @@ class AcclaimSkeleton:
     skeleton: Skeleton
     """Offsets in file units; joints are named after their bones."""
     tips: dict[int, Vectors]
-    metres_per_unit: float
+    metres_per_unit: float | None
+    """None where the file does not say."""
     radians: bool
     axes: Quaternions
     """`(J, 4)` axis frames."""
@@ -76,15 +77,21 @@ def read_asf(path: Path | str) -> AcclaimSkeleton:
     """
     path = Path(path)
     sections = _sections(path)
-    units = dict(line.split(None, 1) for _, line in sections.get("units", []) if " " in line)
-    length = _number(path, units.get("length", "1"), "length under :units")
-    if length <= 0.0:
-        raise FormatError(path, f"the unit's length is {length:g}; expected a positive number")
+    words = (line.split() for _, line in sections.get("units", []))
+    units = {word[0]: word[1] for word in words if len(word) > 1}
+    metres = _metres_per_unit(path, units["length"]) if "length" in units else None
     radians = units.get("angle", "deg").strip().lower().startswith("rad")
     bones = [_root_bone(path, sections.get("root", []), radians)]
     bones += _bones(path, sections.get("bonedata", []), radians)
     parents = _parents(path, sections.get("hierarchy", []), [bone.name for bone in bones])
-    return _figure(path, bones, parents, _INCH / length, radians)
+    return _figure(path, bones, parents, metres, radians)
+
+
+def _metres_per_unit(path: Path, text: str) -> float:
+    length = _number(path, text, "length under :units")
+    if length <= 0.0:
+        raise FormatError(path, f"the unit's length is {length:g}; expected a positive number")
+    return _INCH / length
 
 
 def _skeleton_beside(path: Path) -> Path:
@@ -222,7 +229,7 @@ def _figure(
     path: Path,
     bones: list[_Bone],
     parents: dict[str, str],
-    metres_per_unit: float,
+    metres_per_unit: float | None,
     radians: bool,
 ) -> AcclaimSkeleton:
     by_name = {bone.name: bone for bone in bones}

@@ -9,9 +9,6 @@ from stridewire.motion import quaternion
 from stridewire.motion.resample import resample_rotations, resample_values
 from stridewire.motion.skeleton import Skeleton
 
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "cmu": 0.0254 / 0.45}
-"""Metres per unit by the unit's name; `cmu` is the CMU database's."""
-
 
 def with_rate(motion: SourceMotion, frame_rate: float) -> SourceMotion:
     """Resample to another frame rate with continuous velocities.

@@ -52,15 +52,37 @@ def clean(
         source: File that the motion came from.
         floor: Height of the ground in metres; found where None.
     """
-    if frame_rate != FRAME_RATE:
-        hips = resample_values(hips, frame_rate, FRAME_RATE)
-        rotations = resample_rotations(rotations, frame_rate, FRAME_RATE)
+    hips, rotations = _resampled(hips, rotations, frame_rate)
     positions, _ = kinematics.forward(REFERENCE, hips, rotations)
     drop = np.array([0.0, floor_height(positions) if floor is None else floor, 0.0])
     hips, positions = hips - drop, positions - drop
     pose = extract_root(REFERENCE, hips, rotations, FRAME_RATE).astype(np.float32)
     contacts = detect_contacts(REFERENCE, positions, FRAME_RATE)
     return Clip(name, REFERENCE, FRAME_RATE, pose, contacts, source=source)
+
+
+def ground(hips: Vectors, rotations: Quaternions, frame_rate: float) -> float:
+    """Return the height of the ground under a motion, metres, as `clean` finds it.
+
+    Args:
+        hips: `(T, 3)` in the world, metres.
+        rotations: `(T, 22, 4)` local on the reference skeleton, the hips' in the world.
+        frame_rate: Frames per second of the arrays.
+    """
+    hips, rotations = _resampled(hips, rotations, frame_rate)
+    positions, _ = kinematics.forward(REFERENCE, hips, rotations)
+    return floor_height(positions)
+
+
+def _resampled(
+    hips: Vectors, rotations: Quaternions, frame_rate: float
+) -> tuple[Vectors, Quaternions]:
+    if frame_rate == FRAME_RATE:
+        return hips, rotations
+    return (
+        resample_values(hips, frame_rate, FRAME_RATE),
+        resample_rotations(rotations, frame_rate, FRAME_RATE),
+    )
 
 
 def leading_pose(source: SourceMotion) -> int:

@@ -119,6 +119,12 @@ def leg_length() -> float:
     return float(np.linalg.norm(REFERENCE.offsets[lower], axis=-1).sum() / 2.0)
 
 
+def hip_height() -> float:
+    """Return the height of the reference skeleton's hip joints over the ground; metres."""
+    hips, leg = REFERENCE.indices(("Hips", "LeftUpLeg"))
+    return float(REFERENCE.offsets[hips, 1] + REFERENCE.offsets[leg, 1])
+
+
 def _rest(source: SourceMotion) -> Vectors:
     positions = np.zeros((len(source.skeleton), 3))
     for joint, parent in enumerate(source.skeleton.parents):

@@ -11,12 +11,11 @@ from pathlib import Path
 from stridewire.formats.reading import READERS, read_motion
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion.clip import Clip
-from stridewire_engine.building.cleaning import clean, find_loop, gaps, leading_pose, mend_spikes
+from stridewire_engine.building.cleaning import clean, find_loop
+from stridewire_engine.building.onto_reference import RefusedError, bring
 from stridewire_engine.building.profiles import Profile, shipped_profiles
-from stridewire_engine.building.retarget import fits, retarget
 from stridewire_engine.building.sidecars import Sidecar, Sidecars, Splits
 from stridewire_engine.building.tagging import tag
-from stridewire_engine.rigs.joint_mapping import map_joints
 
 ACCLAIM_RATE = 120.0
 """Frames per second where neither file nor index says it: most AMC files are CMU's."""
@@ -24,12 +23,7 @@ ACCLAIM_RATE = 120.0
 SLOWEST, FASTEST = 20.0, 240.0
 """Frame rates that can be imported; frames per second."""
 
-_SHORTEST_S = 0.25
 _FEW = 8
-
-
-class RefusedError(ValueError):
-    """A file that can be read but not imported; the message says why and what to do."""
 
 
 @dataclass(frozen=True)
@@ -143,43 +137,14 @@ def import_file(
     """
     sidecar = Sidecars().of(path) if sidecar is None else sidecar
     source = read_motion(path)
-    rate, notes = _frame_rate(source, frame_rate, sidecar)
-    source, cleaned = _cleaned(source, rate)
-    notes += cleaned
-    if len(source) < _SHORTEST_S * rate:
-        raise RefusedError(
-            f"{path}: {len(source)} frames at {rate:g} per second; expected at least "
-            f"{_SHORTEST_S:g} s"
-        )
-    profile = find_profile(source, profiles or shipped_profiles())
-    motion = retarget(source, profile, rate)
-    unit, sized = found_unit(source, motion, metres_per_unit)
+    rate, timed = _frame_rate(source, frame_rate, sidecar)
+    brought = bring(source, rate, profiles or shipped_profiles(), metres_per_unit)
+    motion = brought.motion
     floor = 0.0 if motion.unchanged else None
     clip = clean(name or path.stem, motion.hips, motion.rotations, rate, path.name, floor)
-    notes += [*motion.notes, *sized]
     tagged = find_loop(tag(clip, f"{path.stem} {sidecar.words}"))
-    notes += ["it loops"] if tagged.loops else []
-    return Outcome(path, tagged, "", (*source.notes, *notes), profile.name, unit)
-
-
-def _cleaned(source: SourceMotion, frame_rate: float) -> tuple[SourceMotion, list[str]]:
-    """Cut what lies before the motion, mend it, and say so."""
-    cut = leading_pose(source)
-    notes = [f"{cut} frame(s) before the motion begins were cut"] if cut else []
-    source, mended = mend_spikes(source.after(cut), frame_rate)
-    return source, [*notes, *mended, *gaps(source, frame_rate)]
-
-
-def find_profile(source: SourceMotion, profiles: Sequence[Profile]) -> Profile:
-    """Return the fitting profile that names most joints, else one made up for this skeleton.
-
-    Raises:
-        MappingError: If no profile fits and the skeleton's parts cannot be told.
-    """
-    for profile in sorted(profiles, key=lambda p: (-len(p.joints), not p.axes)):
-        if fits(source, profile):
-            return profile
-    return Profile("by names", source.path.name, map_joints(source.skeleton).joints)
+    notes = (*timed, *brought.notes, *(["it loops"] if tagged.loops else []))
+    return Outcome(path, tagged, "", notes, brought.profile.name, brought.unit)
 
 
 def clip_names(paths: Sequence[Path]) -> dict[Path, str]:

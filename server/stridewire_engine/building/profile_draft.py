@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 
 from stridewire.formats.source_motion import SourceMotion
+from stridewire.formats.units import unit_name
 from stridewire.motion.skeleton import REFERENCE
-from stridewire_engine.building.figure import see
+from stridewire_engine.building.figure import Figure, hip_height, leg_length, see
 from stridewire_engine.building.profiles import Profile, spine
 from stridewire_engine.building.rest_pose import rest_rotations
+from stridewire_engine.building.unit_finding import UnitError, find_unit
 from stridewire_engine.rigs.joint_mapping import map_joints
 from stridewire_engine.rigs.joint_names import bare_names
 
@@ -16,6 +18,8 @@ class Draft:
     """A profile and what a person should check in it."""
 
     profile: Profile
+    unit: str
+    """Name of the unit of length; empty where none makes the figure as tall as a human."""
     doubts: tuple[str, ...]
 
     def to_toml(self) -> str:
@@ -61,8 +65,22 @@ def draft_profile(source: SourceMotion, name: str, title: str) -> Draft:
         )
     if not any(part.endswith("Toe") for part in mapped.joints):
         doubts.append("there are no toe joints; the feet's ends stand in")
+    unit, doubt = _unit(source, figure)
+    doubts += [doubt] if doubt else []
     joints = {part: bare[joint] for part, joint in mapped.joints.items()}
-    return Draft(Profile(name, title, joints, spine=chain), tuple(doubts))
+    return Draft(Profile(name, title, joints, spine=chain), unit, tuple(doubts))
+
+
+def _unit(source: SourceMotion, figure: Figure) -> tuple[str, str]:
+    """Return the name of the file's unit, or what is wrong with its size."""
+    legs = figure.length("UpLeg", "Leg", "Foot")
+    try:
+        metres, _ = find_unit(
+            source.path, hip_height() * legs / leg_length(), source.metres_per_unit
+        )
+    except UnitError as error:
+        return "", str(error)
+    return unit_name(metres), ""
 
 
 def _quoted(text: str) -> str:

@@ -2,14 +2,22 @@
 
 import shlex
 import sys
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import click
 
+from stridewire.formats.units import UNITS, parse_unit
 from stridewire.motion.clip import Clip
 from stridewire_engine.building.build import MatchingOptions, build_library
-from stridewire_engine.building.importing import FASTEST, SLOWEST, import_files, motion_files
+from stridewire_engine.building.importing import (
+    FASTEST,
+    SLOWEST,
+    Outcome,
+    import_files,
+    motion_files,
+)
 from stridewire_engine.building.profiles import Profile, ProfileError, load_profile
 from stridewire_engine.building.sidecars import SidecarError, Splits, read_splits
 from stridewire_engine.building.tagging import only_tagged
@@ -32,6 +40,7 @@ _FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 @click.option("--mirror/--no-mirror", default=True, show_default=True, help="Add mirrored copies.")
 @click.option("--profile", "profiles", multiple=True, type=_FILE, help="Joint map to try first.")
 @click.option("--rate", type=click.FloatRange(SLOWEST, FASTEST), help="True rate of all files.")
+@click.option("--unit", help=f"Of all files ({', '.join(UNITS)}, or metres).")
 @click.option("--split", "split", multiple=True, help="Take only files of it; needs --split-file.")
 @click.option("--split-file", type=_FILE, help="CSV with the columns data, subject and split.")
 @click.option("--tagged", multiple=True, metavar="TAG", help="Keep clips of nothing else.")
@@ -46,6 +55,7 @@ def build(
     mirror: bool,
     profiles: tuple[Path, ...],
     rate: float | None,
+    unit: str | None,
     split: tuple[str, ...],
     split_file: Path | None,
     tagged: tuple[str, ...],
@@ -60,7 +70,14 @@ def build(
     beside the files (columns file, fps, subject, description) corrects frame rates and adds tags.
     """
     paths = _files(inputs, split, split_file)
-    clips = _import(paths, [_profile(path) for path in profiles], rate, jobs)
+    outcomes = import_files(
+        paths,
+        profiles=[_profile(path) for path in profiles],
+        frame_rate=rate,
+        metres_per_unit=_metres(unit),
+        jobs=jobs,
+    )
+    clips = _import(outcomes, len(paths))
     if tagged:
         clips = [clip for clip in clips if only_tagged(clip, tagged)]
         click.echo(f"kept {len(clips)} clips of {', '.join(tagged)}")
@@ -109,6 +126,13 @@ def _splits(split: tuple[str, ...], split_file: Path | None) -> Splits | None:
     return splits
 
 
+def _metres(unit: str | None) -> float | None:
+    try:
+        return parse_unit(unit) if unit else None
+    except ValueError as error:
+        raise click.BadParameter(str(error), param_hint="--unit") from None
+
+
 def _profile(path: Path) -> Profile:
     try:
         return load_profile(path)
@@ -116,27 +140,28 @@ def _profile(path: Path) -> Profile:
         raise click.ClickException(str(error)) from None
 
 
-def _import(
-    paths: Sequence[Path], profiles: Sequence[Profile], rate: float | None, jobs: int
-) -> list[Clip]:
+def _import(outcomes: Iterable[Outcome], files: int) -> list[Clip]:
     """Import with a progress bar; print a line for each file that is refused or odd."""
-    clips, lines, refused = [], [], 0
-    outcomes = import_files(paths, profiles=profiles, frame_rate=rate, jobs=jobs)
+    clips, lines, units = [], [], Counter[str]()
     try:
         with click.progressbar(
-            outcomes, length=len(paths), label="importing", show_pos=True, file=sys.stderr
+            outcomes, length=files, label="importing", show_pos=True, file=sys.stderr
         ) as bar:
             for outcome in bar:
                 if outcome.clip is None:
-                    refused += 1
                     lines.append(f"refused: {outcome.problem}")
                     continue
                 clips.append(outcome.clip)
+                units[outcome.unit] += 1
                 if outcome.notes:
                     lines.append(f"note: {outcome.path}: {'; '.join(outcome.notes)}")
     except SidecarError as error:
         raise click.ClickException(str(error)) from None
     for line in lines:
         click.echo(line, err=True)
-    click.echo(f"imported {len(clips)} of {len(paths)} files, refused {refused}")
+    of = ", ".join(f"{count} in {unit}" for unit, count in units.most_common())
+    click.echo(
+        f"imported {len(clips)} of {files} files{f' ({of})' if of else ''}, "
+        f"refused {files - len(clips)}"
+    )
     return clips

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from stridewire.formats.reading import read_motion
-from stridewire_engine.building.importing import find_profile
+from stridewire_engine.building.onto_reference import find_profile
 from stridewire_engine.building.profile_draft import draft_profile
 from stridewire_engine.building.profiles import shipped_profiles
 
@@ -32,4 +32,5 @@ def profile(file: Path, name: str | None, out: Path | None) -> None:
         out.write_text(text, encoding="utf-8")
     known = fitting.name != "by names"
     said = f"the shipped profile {fitting.name!r} fits" if known else "no shipped profile fits"
-    click.echo(f"{file}: {said}; {len(draft.doubts)} thing(s) to check", err=True)
+    unit = f"its unit is {draft.unit}; " if draft.unit else ""
+    click.echo(f"{file}: {said}; {unit}{len(draft.doubts)} thing(s) to check", err=True)

@@ -13,7 +13,8 @@ from stridewire.formats.source_motion import FormatError
 from stridewire.motion import kinematics
 from stridewire.motion.clip import Clip
 from stridewire.motion.skeleton import REFERENCE
-from stridewire_engine.building.importing import Outcome, find_profile, import_file
+from stridewire_engine.building.importing import Outcome, import_file
+from stridewire_engine.building.onto_reference import find_profile
 from stridewire_engine.building.profiles import shipped_profiles
 from stridewire_engine.building.retarget import NotHumanError
 from stridewire_engine.rigs.joint_mapping import MappingError

@@ -9,7 +9,7 @@ from stridewire.motion import kinematics, quaternion
 from stridewire.motion.array_types import Quaternions, Vectors
 from stridewire.motion.skeleton import REFERENCE, Skeleton
 from stridewire_engine.building.figure import NEXT, direction
-from stridewire_engine.building.importing import find_profile
+from stridewire_engine.building.onto_reference import find_profile
 from stridewire_engine.building.profiles import shipped_profiles
 from stridewire_engine.building.retarget import NotHumanError, Retargeted, retarget
 
@@ -49,7 +49,7 @@ def folded() -> Quaternions:
 
 
 @pytest.mark.parametrize("scale", [1.0, 100.0, 39.37, 17.72])
-def test_units_do_not_matter(scale: float) -> None:
+def test_units_change_nothing(scale: float) -> None:
     """Metres, centimetres, inches and CMU's unit give the same motion in metres."""
     result = retargeted(source(scale=scale))
     assert result.scale == pytest.approx(1.0 / scale, rel=1e-3)

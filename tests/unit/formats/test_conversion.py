@@ -1,18 +1,23 @@
 """Converting: rate, units and up axis change what they should and nothing else."""
 
+from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from tests.unit.building.figures import source
 
+from stridewire._errors import StridewireError
 from stridewire.commands.convert import convert
+from stridewire.formats import retargeting
 from stridewire.formats.bvh import read_bvh
 from stridewire.formats.bvh_writing import clip_in_centimetres, write_source_bvh
 from stridewire.formats.conversion import scaled, turned_up, with_rate
 from stridewire.formats.npz import read_npz, write_npz
 from stridewire.formats.source_motion import FormatError, SourceMotion
 from stridewire.motion.clip import Clip
+from stridewire.motion.skeleton import REFERENCE
 
 
 @pytest.fixture
@@ -95,7 +100,7 @@ def test_the_command_converts(tmp_path: Path, motion: SourceMotion) -> None:
     """Rate, unit and up axis are obeyed together."""
     write_source_bvh(tmp_path / "a.bvh", motion)
     args = [str(tmp_path / "a.bvh"), str(tmp_path / "b.npz"), "--rate", "30", "--up", "Z"]
-    result = CliRunner().invoke(convert, [*args, "--from-unit", "cm", "--to-unit", "m"])
+    result = CliRunner().invoke(convert, [*args, "--unit", "cm", "--to-unit", "m"])
     assert result.exit_code == 0, result.output
     assert "30 per second" in result.output
     converted = read_npz(tmp_path / "b.npz")
@@ -113,4 +118,39 @@ def test_the_command_says_what_it_lacks(tmp_path: Path, motion: SourceMotion) ->
     assert "expected .bvh or .npz" in ending.output
     unit = CliRunner().invoke(convert, [source, str(tmp_path / "b.bvh"), "--to-unit", "m"])
     assert unit.exit_code == 2
-    assert "--from-unit" in unit.output
+    assert "--unit" in unit.output
+
+
+def test_the_command_brings_a_file_onto_the_reference(tmp_path: Path) -> None:
+    """Whatever the rig, unit and up axis, the result imports without being retargeted."""
+    rig = source(scale=39.37, z_up=True)
+    write_source_bvh(tmp_path / "a.bvh", rig)
+    args = [str(tmp_path / "a.bvh"), str(tmp_path / "b.bvh"), "--skeleton", "reference"]
+    result = CliRunner().invoke(convert, args)
+    assert result.exit_code == 0, result.output
+    assert "its unit is inch" in result.output
+    back = read_bvh(tmp_path / "b.bvh")
+    assert back.skeleton.names == REFERENCE.names
+    np.testing.assert_allclose(back.skeleton.offsets[1:], 100.0 * REFERENCE.offsets[1:], atol=1e-4)
+
+
+def test_a_skeleton_that_nobody_offers_is_refused(tmp_path: Path, motion: SourceMotion) -> None:
+    """The message names those that installed packages offer."""
+    write_source_bvh(tmp_path / "a.bvh", motion)
+    args = [str(tmp_path / "a.bvh"), str(tmp_path / "b.bvh"), "--skeleton", "alien"]
+    result = CliRunner().invoke(convert, args)
+    assert result.exit_code == 1
+    assert "offered: reference" in result.output
+
+
+@pytest.mark.parametrize("installed", [True, False])
+def test_an_absent_extra_is_named(monkeypatch: pytest.MonkeyPatch, installed: bool) -> None:
+    """Without the server's packages retargeting says what to install."""
+    broken = EntryPoint("reference", "no_such_package:bring", "stridewire.skeletons")
+
+    def points(group: str, **_: str) -> EntryPoints:
+        return EntryPoints([broken] if installed else [])
+
+    monkeypatch.setattr(retargeting, "entry_points", points)
+    with pytest.raises(StridewireError, match=r"stridewire\[server\]"):
+        retargeting.find_retargeting("reference")
