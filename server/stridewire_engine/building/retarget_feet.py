@@ -20,8 +20,9 @@ _STILL = 0.15
 _SLOW = 0.3
 _LOW = 0.05
 _FLAT = 0.025
-_FADE_S = 0.2
-_SLOWLY_S = 1.0
+_FADE_S = 0.12
+_SLOWLY_S = 0.5
+_FREE = np.array([0.03, 0.005, 0.03])
 _ENOUGH_S = 0.3
 _TIPTOE = np.cos(np.deg2rad(35.0))
 _UP = np.array([0.0, 1.0, 0.0])
@@ -126,8 +127,9 @@ def misplaced(
 ) -> Misplaced:
     """Compare a toe with the source's.
 
-    The toe keeps an offset from the source's, the median while the foot stands, in the foot's
-    heading, but the same throughout a step, since feet pivot on planted toes.
+    The toe keeps an offset from the source's that is the same throughout a step, since feet pivot
+    on planted toes: the one that leaves the leg as it is, but within 3 cm along the ground and half
+    a centimetre in height of the median while the foot stands, in the foot's heading.
 
     Args:
         hips: `(T, 3)` in the world, metres.
@@ -144,11 +146,13 @@ def misplaced(
     sure = stands if stands.any() else _low(feet[:, 1])
     kept = quaternion.rotate(heading, _rows(np.median(local[sure], axis=0), len(off)))
     planted = _planted(feet[:, 1], frame_rate)
-    return Misplaced(_held(kept, planted, frame_rate) - off, _near(planted, frame_rate))
+    usual, own = (_held(offset, planted, frame_rate) for offset in (kept, off))
+    kept = usual + np.clip(own - usual, -_FREE, _FREE)
+    return Misplaced(kept - off, _near(planted, frame_rate))
 
 
 def moved(hips: Vectors, sides: Sequence[Misplaced], frame_rate: float) -> Vectors:
-    """Return the hips moved by what both legs ask for over a second while their toes are planted.
+    """Return the hips moved by what both legs ask for over half a second while toes are planted.
 
     Thighs and shins in other proportions put the feet of bent legs elsewhere; in a crouch, moving
     the hips serves both legs better than bending each. Steps are too quick for it to show.
@@ -209,7 +213,7 @@ def _held(values: Vectors, planted: Flags, frame_rate: float) -> Vectors:
 
 
 def _near(planted: Flags, frame_rate: float) -> Floats:
-    """Return `(T,)` 1 while the toe is planted, fading to 0 over 0.2 s before and after."""
+    """Return `(T,)` 1 while the toe is planted, fading to 0 over 0.12 s before and after."""
     fade = max(1, round(_FADE_S * frame_rate))
     held = np.convolve(planted, np.ones(2 * fade + 1))[fade:-fade] > 0.5
     return _smoothed(held[:, None].astype(np.float64), frame_rate)[:, 0]
