@@ -19,12 +19,9 @@ from stridewire.v1 import animation_pb2 as pb
 Call = Callable[..., list[pb.AnimateResponse]]
 
 OPEN = {
-    "open.output_skeleton": {"output_skeleton": pose_pb2.Skeleton(name="mixamo")},
-    "open.format": {"format": pb.POSE_FORMAT_F16},
     "open.resume_token": {"resume_token": "r"},
 }
 SPEC = {
-    "height_m": {"height_m": 1.8},
     "responsiveness": {"responsiveness": 0.0},
     "rate_divider": {"rate_divider": 2},
 }
@@ -92,6 +89,7 @@ def test_all_other_fields_work(raw_stream: Call) -> None:
         root=pose_pb2.GroundPose(position=pose_pb2.Vector3(x=1.0), yaw=0.5),
         stitcher="none",
         foot_lock=False,
+        height_m=1.8,
         filter="walk | idle",
         weights={"trajectory-position": 2.0},
     )
@@ -103,6 +101,8 @@ def test_all_other_fields_work(raw_stream: Call) -> None:
         max_frames_in_flight=8,
         detail=pb.DETAIL_COSTS,
         seed=3,
+        output_skeleton=pose_pb2.Skeleton(name="reference"),
+        format=pb.POSE_FORMAT_F16,
     )
     trajectory = pose_pb2.Trajectory(
         positions_xz=[0, 1, 0, 2], facings_yaw=[0, 0], times_s=[0.5, 1]

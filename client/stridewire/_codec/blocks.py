@@ -52,6 +52,25 @@ def read_block(message: Message, name: str, *shape: int) -> Floats:
     return block.reshape(shape) if shape and fits else block
 
 
+def write_halves(message: Message, **blocks: Floats) -> None:
+    """Write arrays to `bytes` fields as little-endian half floats, flattened row by row."""
+    for name, values in blocks.items():
+        setattr(message, name, np.asarray(values, "<f2").tobytes())
+
+
+def read_halves(message: Message, name: str, *shape: int) -> Floats:
+    """Return a block of half floats as a read-only float32 array.
+
+    Args:
+        message: The message that has the field `NAME_f16`.
+        name: Name of the block.
+        shape: Shape of the array.
+    """
+    block = np.frombuffer(getattr(message, f"{name}_f16"), "<f2").astype(np.float32)
+    block.flags.writeable = False
+    return block.reshape(shape) if block.size == np.prod(shape, dtype=int) else block
+
+
 def read_integers(values: object) -> Indices:
     """Return a `repeated uint32` field as a read-only array."""
     integers = np.array(values, np.uint32)

@@ -2,7 +2,13 @@
 
 from typing import assert_never
 
-from stridewire._codec.blocks import read_block, read_integers, write_blocks
+from stridewire._codec.blocks import (
+    read_block,
+    read_halves,
+    read_integers,
+    write_blocks,
+    write_halves,
+)
 from stridewire._codec.events import decode_event, encode_event
 from stridewire._codec.shared import (
     decode_library_info,
@@ -78,14 +84,18 @@ def _encode_frame(frame: Frame) -> pb.Frame:
             for stage, elapsed in frame.timings_ms.items()
         ),
     )
-    write_blocks(
-        wire,
-        root=frame.root,
-        root_delta=frame.root_delta,
-        hips=frame.hips,
-        rotations=frame.rotations,
-        foot_targets=frame.foot_targets,
-    )
+    # half floats have steps of 6 cm a hundred metres from the origin: the root comes whole, too
+    write_blocks(wire, root=frame.root, foot_targets=frame.foot_targets)
+    if frame.format is PoseFormat.F16:
+        write_halves(
+            wire,
+            root_f16=frame.root,
+            root_delta_f16=frame.root_delta,
+            hips_f16=frame.hips,
+            rotations_f16=frame.rotations,
+        )
+    else:
+        write_blocks(wire, root_delta=frame.root_delta, hips=frame.hips, rotations=frame.rotations)
     if frame.simulated_root is not None:
         write_blocks(wire, simulated_root=frame.simulated_root)
     return wire
@@ -93,7 +103,10 @@ def _encode_frame(frame: Frame) -> pb.Frame:
 
 def _decode_frame(wire: pb.Frame) -> Frame:
     count = len(wire.characters)
-    joints = len(wire.rotations) // (4 * count) if count else 0
+    halves = bool(wire.rotations_f16)
+    read = read_halves if halves else read_block
+    numbers = len(wire.rotations_f16) // 2 if halves else len(wire.rotations)
+    joints = numbers // (4 * count) if count else 0
     return Frame(
         frame=wire.frame,
         applied_step=wire.applied_step,
@@ -101,9 +114,9 @@ def _decode_frame(wire: pb.Frame) -> Frame:
         client_time_s=wire.client_time_s,
         characters=read_integers(wire.characters),
         root=read_block(wire, "root", count, 7),
-        root_delta=read_block(wire, "root_delta", count, 4),
-        hips=read_block(wire, "hips", count, 3),
-        rotations=read_block(wire, "rotations", count, joints, 4),
+        root_delta=read(wire, "root_delta", count, 4),
+        hips=read(wire, "hips", count, 3),
+        rotations=read(wire, "rotations", count, joints, 4),
         contacts=read_integers(wire.contacts),
         foot_targets=read_block(wire, "foot_targets", count, 2, 3),
         flags=read_integers(wire.flags),
@@ -113,6 +126,7 @@ def _decode_frame(wire: pb.Frame) -> Frame:
         events=tuple(map(decode_event, wire.events)),
         dropped=wire.dropped,
         timings_ms={timing.stage: timing.elapsed_ms for timing in wire.timings},
+        format=PoseFormat.F16 if halves else PoseFormat.F32,
     )
 
 

@@ -9,8 +9,10 @@ import numpy as np
 from stridewire._codec.blocks import read_block, write_blocks
 from stridewire._errors import InvalidRequestError, Violation
 from stridewire._messages import GroundPose, LibraryInfo, Limits, Trajectory
-from stridewire.motion.skeleton import Skeleton, SkeletonError
+from stridewire.motion.skeleton import REFERENCE, Skeleton, SkeletonError
 from stridewire.v1 import animation_pb2, pose_pb2
+
+_SKELETONS = {"reference": REFERENCE}
 
 AnyEnum = TypeVar("AnyEnum", bound=IntEnum)
 
@@ -54,6 +56,16 @@ def decode_skeleton(wire: pose_pb2.Skeleton, field: str) -> Skeleton:
     Raises:
         InvalidRequestError: If names, parents and offsets make no tree.
     """
+    if wire.name and not wire.joints:
+        if wire.name not in _SKELETONS:
+            known = ", ".join(_SKELETONS)
+            raise InvalidRequestError.of(
+                Violation(
+                    f"{field}.name",
+                    f"{wire.name!r} is not known, only {known}; give joints, parents and offsets",
+                )
+            )
+        return _SKELETONS[wire.name]
     offsets = read_block(wire, "offsets", -1, 3)
     try:
         return Skeleton(tuple(wire.joints), tuple(wire.parents), offsets.astype(np.float64))

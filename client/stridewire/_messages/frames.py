@@ -10,6 +10,13 @@ from stridewire._messages.matches import ExcludedMatch, Match
 from stridewire.motion.array_types import Floats, Indices
 
 
+class PoseFormat(IntEnum):
+    """How the blocks of a frame are written."""
+
+    F32 = 1
+    F16 = 2
+
+
 class TransitionReason(IntEnum):
     """Why a transition was made."""
 
@@ -114,6 +121,8 @@ class Frame:
     events: Sequence[Event] = ()
     dropped: int = 0
     timings_ms: Mapping[str, float] = field(default_factory=dict)
+    format: PoseFormat = PoseFormat.F32
+    """How the frame travels; arrays are float32 all the same."""
 
     def flagged(self, flag: FrameFlag) -> Indices:
         """Return the ids of the characters that have a flag."""

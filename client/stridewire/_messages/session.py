@@ -8,7 +8,7 @@ from stridewire._errors import Violation
 from stridewire._messages.about import LibraryInfo, Limits
 from stridewire._messages.characters import CharacterSpec, Edit
 from stridewire._messages.controls import Step
-from stridewire._messages.frames import Frame
+from stridewire._messages.frames import Frame, PoseFormat
 from stridewire.motion.skeleton import Skeleton
 
 
@@ -17,13 +17,6 @@ class Pacing(IntEnum):
 
     CLIENT = 1
     SERVER = 2
-
-
-class PoseFormat(IntEnum):
-    """How the blocks of a frame are written."""
-
-    F32 = 1
-    F16 = 2
 
 
 class Detail(IntEnum):

@@ -14,7 +14,6 @@ from stridewire._messages import (
     GroundPose,
     Limits,
     Open,
-    PoseFormat,
     Sparse,
     Trajectory,
 )
@@ -32,6 +31,7 @@ _MAX_TRAJECTORY_S = 10.0
 _MIN_RATE_HZ, _MAX_RATE_HZ = 10.0, 240.0
 _MAX_CREDITS = 3600
 _MAX_WEIGHT = 1e6
+_MIN_HEIGHT_M, _MAX_HEIGHT_M = 0.5, 3.0
 NOT_YET = "is not implemented yet; leave it out"
 
 STITCHER_NAMES = tuple(stitcher.name for stitcher in STITCHERS)
@@ -67,8 +67,6 @@ def check_open(message: Open, limits: Limits, matcher: Matcher) -> None:
 
 def later_fields(spec: CharacterSpec) -> Iterator[str]:
     """Yield the fields of a character that belong to later versions and are set."""
-    if spec.height_m:
-        yield "height_m"
     if spec.responsiveness is not None:
         yield "responsiveness"
     if spec.rate_divider > 1:
@@ -90,6 +88,12 @@ def check_spec(
         yield Violation(f"{path}.id", f"{spec.id} is no id; allowed are 0 to {_MAX_ID}")
     elif spec.id in taken:
         yield Violation(f"{path}.id", f"{spec.id} is taken; ids are unique within a session")
+    if spec.height_m and not _MIN_HEIGHT_M <= spec.height_m <= _MAX_HEIGHT_M:
+        yield Violation(
+            f"{path}.height_m",
+            f"{spec.height_m} m; allowed are {_MIN_HEIGHT_M:g} to {_MAX_HEIGHT_M:g}, or 0 for the "
+            "skeleton's own",
+        )
     yield from check_ground_pose(f"{path}.root", spec.root)
     yield from check_stitcher(f"{path}.stitcher", spec.stitcher)
     yield from check_filter(f"{path}.filter", spec.filter, matcher)
@@ -231,10 +235,6 @@ def check_trajectory(path: str, trajectory: Trajectory) -> Iterator[Violation]:
 
 
 def _open_later(message: Open) -> Iterator[str]:
-    if message.output_skeleton is not None:
-        yield "open.output_skeleton"
-    if message.format is PoseFormat.F16:
-        yield "open.format"
     if message.resume_token:
         yield "open.resume_token"
 

@@ -62,7 +62,7 @@ def apply_step(roster: Roster, crowd: Crowd, step: Step, limits: Limits) -> Iter
         good = _hold(roster, places, good, fine)
     rows = roster.rows[places[good]]
     if velocity is not None:
-        state.desired_velocity[rows] = velocity[good]
+        state.desired_velocity[rows] = velocity[good] / roster.scales[places[good], None]
         state.has_path[rows] = False
     if facing is not None:
         state.desired_facing[rows] = facing[good]
@@ -76,7 +76,7 @@ def place(state: Characters, rows: Indices, positions: Floats, yaws: Floats) -> 
     Args:
         state: Of the crowd.
         rows: `(M,)`.
-        positions: `(M, 3)` world, metres.
+        positions: `(M, 3)` world, metres of the reference skeleton's size.
         yaws: `(M,)` radians.
     """
     kept = {name: getattr(state, name)[rows] for name in _KEPT}
@@ -97,9 +97,9 @@ def set_filter(crowd: Crowd, row: int, text: str) -> None:
         crowd.state.force_search[row] = True
 
 
-def follow(state: Characters, row: int, trajectory: Trajectory) -> None:
-    """Give a character a trajectory; the last point repeats to the end of its array."""
-    positions = np.asarray(trajectory.positions_xz, np.float64)
+def follow(state: Characters, row: int, trajectory: Trajectory, scale: float = 1.0) -> None:
+    """Give a character of a size a trajectory; the last point repeats to the end of its array."""
+    positions = np.asarray(trajectory.positions_xz, np.float64) / scale
     count = len(positions)
     path = np.empty((count, 4))
     path[:, :2] = positions
@@ -136,27 +136,28 @@ def _apply_sparse(roster: Roster, crowd: Crowd, path: str, sparse: Sparse) -> li
         if at >= 0:
             roster.flag(at, FrameFlag.HELD)
         return wrong
-    row, state = int(roster.rows[at]), crowd.state
+    row, state, scale = int(roster.rows[at]), crowd.state, float(roster.scales[at])
     if sparse.filter is not None:
         set_filter(crowd, row, sparse.filter)
     if sparse.gait is not None:
         tags = crowd.library.tag_names
         set_filter(crowd, row, gait_filter(sparse.gait, path, tags))
     if sparse.trajectory is not None:
-        follow(state, row, sparse.trajectory)
+        follow(state, row, sparse.trajectory, scale)
     if sparse.root_correction is not None:
         if sparse.root_correction.mode is CorrectionMode.TELEPORT:
             roster.flag(at, FrameFlag.TELEPORTED)
-        _correct(state, row, sparse.root_correction)
+        _correct(state, row, sparse.root_correction, scale)
     if sparse.force_search:
         state.force_search[row] = True
     return []
 
 
-def _correct(state: Characters, row: int, correction: RootCorrection) -> None:
+def _correct(state: Characters, row: int, correction: RootCorrection, scale: float) -> None:
     root = correction.root
+    position = np.asarray(root.position, np.float64) / scale
     if correction.mode is CorrectionMode.TELEPORT:
-        place(state, np.array([row]), np.array([root.position]), np.array([root.yaw]))
+        place(state, np.array([row]), position[None], np.array([root.yaw]))
     else:
-        state.correction[row, :3] = root.position - state.root_position[row]
+        state.correction[row, :3] = position - state.root_position[row]
         state.correction[row, 3] = wrap_angle(np.asarray(root.yaw - state.root_yaw[row]))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from stridewire._messages import FrameFlag
-from stridewire.motion.array_types import Indices
+from stridewire.motion.array_types import Floats, Indices
 
 
 class Roster:
@@ -14,21 +14,25 @@ class Roster:
         """`(N,)` the caller's ids."""
         self.rows: Indices = np.zeros(0, np.intp)
         """`(N,)` rows of the crowd."""
+        self.scales: Floats = np.zeros(0)
+        """`(N,)` sizes in the reference skeleton's."""
         self._flags: Indices = np.zeros(0, np.uint32)
 
     def __len__(self) -> int:
         return len(self.ids)
 
-    def add(self, ids: Indices, rows: Indices) -> None:
+    def add(self, ids: Indices, rows: Indices, scales: Floats) -> None:
         """Add characters at the end."""
         self.ids = np.concatenate([self.ids, ids.astype(np.uint32)])
         self.rows = np.concatenate([self.rows, rows])
+        self.scales = np.concatenate([self.scales, scales])
         self._flags = np.concatenate([self._flags, np.zeros(len(ids), np.uint32)])
 
     def remove(self, place: int) -> None:
         """Take a character out."""
         self.ids = np.delete(self.ids, place)
         self.rows = np.delete(self.rows, place)
+        self.scales = np.delete(self.scales, place)
         self._flags = np.delete(self._flags, place)
 
     def places(self, ids: Indices) -> Indices:

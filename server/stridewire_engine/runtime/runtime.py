@@ -40,6 +40,7 @@ from stridewire.motion.array_types import Floats
 from stridewire_engine.library import Library, LibraryError
 from stridewire_engine.runtime import admission, catalogue, queries
 from stridewire_engine.runtime.crowd import Crowd
+from stridewire_engine.runtime.output import Output
 from stridewire_engine.runtime.session import Session
 from stridewire_engine.runtime.settings import TickSettings
 
@@ -133,15 +134,16 @@ class Runtime:
             message.seed,
             admission.STITCHER_NAMES[0],
         )
+        output = Output(message, crowd.library.skeleton)
         opened = Opened(
             session=f"s{next(self._numbers)}",
-            skeleton=crowd.library.skeleton,
+            skeleton=output.skeleton,
             library=crowd.library.info(),
             server_version=__version__,
             settings=settings,
             limits=self._limits,
         )
-        session = Session(crowd, opened, self._limits)
+        session = Session(crowd, opened, output, self._limits)
         session.add(message.characters)
         if self._record is not None:
             self._recordings[session.id] = self._record(message, opened)

@@ -24,6 +24,7 @@ from stridewire.motion.contacts import to_mask
 from stridewire_engine.runtime import admission, controls
 from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.events import TickEvents
+from stridewire_engine.runtime.output import Output
 from stridewire_engine.runtime.roster import Roster
 from stridewire_engine.runtime.tick import Block
 
@@ -35,14 +36,16 @@ _UPDATABLE_LATER = ("responsiveness", "rate_divider")
 class Session:
     """One caller's characters. Made by `Runtime.open`; driven by one thread."""
 
-    def __init__(self, crowd: Crowd, opened: Opened, limits: Limits) -> None:
+    def __init__(self, crowd: Crowd, opened: Opened, output: Output, limits: Limits) -> None:
         self.opened = opened
+        self._output = output
         self.crowd = crowd
         self._roster = Roster()
         self._limits = limits
         self._rng = np.random.default_rng(opened.settings.seed)
         self._frame = 0
         self._time = 0.0
+        self._dt = 0.0
         self._applied = Step(step=0, client_time_s=0.0)
 
     def __len__(self) -> int:
@@ -63,13 +66,14 @@ class Session:
         """Add characters that were checked."""
         rows = self.crowd.add(len(specs))
         state = self.crowd.state
-        positions = np.array([spec.root.position for spec in specs])
+        scales = np.array([self._output.scale(spec.height_m) for spec in specs])
+        positions = np.array([spec.root.position for spec in specs]) / scales[:, None]
         controls.place(state, rows, positions, np.array([spec.root.yaw for spec in specs]))
         for row, spec in zip(rows, specs, strict=True):
             self._set(int(row), spec, _UPDATABLE)
         # characters that search at different times share the work evenly among the ticks
         state.stagger[rows] = self._rng.random(len(specs))
-        self._roster.add(np.array([spec.id for spec in specs]), rows)
+        self._roster.add(np.array([spec.id for spec in specs]), rows, scales)
 
     def remove_all(self) -> None:
         """Give all rows back."""
@@ -96,6 +100,7 @@ class Session:
         self._applied = step
         wrong += controls.apply_step(self._roster, self.crowd, step, self._limits)
         self._time += dt
+        self._dt = dt
         return np.full(len(self), dt), _error(step.step, wrong)
 
     def end_tick(self, block: Block, rows: slice) -> Frame:
@@ -103,22 +108,24 @@ class Session:
         self._frame += 1
         detail = self.opened.settings.detail
         ids, crowd = self._roster.ids, self.crowd
+        shown = self._output.show(block, rows, ids, self._roster.scales, self._dt)
         return Frame(
             frame=self._frame,
             applied_step=self._applied.step,
             time_s=self._time,
             client_time_s=self._applied.client_time_s,
             characters=ids,
-            root=block.root[rows],
-            root_delta=block.root_delta[rows],
-            hips=block.hips[rows],
-            rotations=block.rotations[rows],
+            root=shown.root,
+            root_delta=shown.root_delta,
+            hips=shown.hips,
+            rotations=shown.rotations,
             contacts=to_mask(block.contacts[rows]),
-            foot_targets=block.foot_targets[rows],
+            foot_targets=shown.foot_targets,
             flags=self._roster.take_flags(),
-            simulated_root=block.simulated_root[rows] if detail is Detail.COSTS else None,
+            simulated_root=shown.simulated_root if detail is Detail.COSTS else None,
             events=TickEvents(block, rows, ids, self._frame, detail, crowd.matcher, crowd.sets),
             timings_ms=block.timings_ms,
+            format=self.opened.settings.format,
         )
 
     def _check_dt(self, dt: float) -> tuple[float, list[Violation]]:

@@ -6,9 +6,7 @@ from stridewire._errors import InvalidRequestError, NotFoundError, NotImplemente
 from stridewire._messages import (
     CharacterSpec,
     GroundPose,
-    PoseFormat,
 )
-from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.library import Library, LibraryError
 from stridewire_engine.matching.presets import LOCOMOTION
 from stridewire_engine.runtime import Runtime
@@ -89,10 +87,7 @@ def test_limits_themselves_are_allowed(runtime: Runtime, changes: dict) -> None:
 @pytest.mark.parametrize(
     ("changes", "field"),
     [
-        ({"output_skeleton": REFERENCE}, "open.output_skeleton"),
-        ({"format": PoseFormat.F16}, "open.format"),
         ({"resume_token": "x"}, "open.resume_token"),
-        ({"characters": [CharacterSpec(1, height_m=1.8)]}, "open.characters[0].height_m"),
         (
             {"characters": [CharacterSpec(1, responsiveness=0.0)]},
             "open.characters[0].responsiveness",
