@@ -1,9 +1,10 @@
 """Tags: named spans of a clip, from how it moves and from the words of its file's name.
 
-Every upright frame gets one of `idle`, `walk`, `jog`, `run`, `backward`, `sidestep` (with
-`sidestep-left` or `-right`); `turn` (`turn-left`, `turn-right`), `start` and `stop` lie over them.
-Frames that crawl, sit or lie get `low`. Words of the file's name that no speed tells, such as
-`dance`, hold for the whole clip.
+Every frame gets one of `idle`, `walk`, `jog`, `run`, `backward`, `sidestep` (with `sidestep-left`
+or `-right`); `turn` (`turn-left`, `turn-right`), `start` and `stop` lie over them. Frames that
+crawl, sit, lie or stand deep get `low` instead, such that climb or leap `aloft`, and such whose
+hands are busy `gesture`: they are no plain locomotion, whatever their speed.
+Words of the file's name that no speed tells, such as `dance`, hold for the whole clip.
 """
 
 import re
@@ -13,11 +14,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from stridewire.motion import kinematics, quaternion
+from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats
 from stridewire.motion.clip import Clip, Pose, TagSpan, differences
 from stridewire.motion.root import savitzky_golay
-from stridewire.motion.skeleton import REFERENCE
+from stridewire_engine.building.posture import posture
 
 IDLE_SPEED = 0.25
 """Below this a character stands; metres per second."""
@@ -52,8 +53,6 @@ _UNDER_WAY = 0.8
 _ASIDE_SPEED = 0.4
 _TO_SIDE = np.deg2rad(50.0)
 _TO_BACK = np.deg2rad(130.0)
-_LOW_HIPS = 0.7
-_LEANING = np.cos(np.deg2rad(60.0))
 
 
 def tag(clip: Clip, words: str) -> Clip:
@@ -84,21 +83,25 @@ def measured_tags(clip: Clip) -> tuple[TagSpan, ...]:
     speed = np.hypot(velocity[:, 0], velocity[:, 1])
     turning = yaw_rate(clip.pose, frame_rate)
     shortest = round(_SHORTEST_S * frame_rate)
-    upright = _upright(clip.pose)
-    moving = _settle(speed >= IDLE_SPEED, shortest) & upright
+    body = posture(clip, speed)
+    plain = ~(body.low | body.aloft | body.gesture)
+    moving = _settle(speed >= IDLE_SPEED, shortest) & plain
     gait = _settle_labels(_gaits(speed, np.arctan2(velocity[:, 0], velocity[:, 1])), shortest)
     masks = {name: moving & (gait == name) for name in np.unique(gait)}
     side = masks.get("sidestep", np.zeros(len(clip), bool))
     masks |= {
-        "idle": upright & ~moving,
-        "low": ~upright,
+        "idle": plain & ~moving,
+        "low": body.low,
+        "aloft": body.aloft,
+        "gesture": body.gesture,
         "sidestep-left": side & (velocity[:, 0] > 0.0),
         "sidestep-right": side & (velocity[:, 0] <= 0.0),
-        "turn": upright & _settle(np.abs(turning) >= TURN_RATE, shortest),
+        "turn": plain & _settle(np.abs(turning) >= TURN_RATE, shortest),
     }
     masks["turn-left"] = masks["turn"] & (turning > 0.0)
     masks["turn-right"] = masks["turn"] & (turning <= 0.0)
-    masks |= _changes(speed, masks["idle"], round(_AROUND_S * frame_rate))
+    changes = _changes(speed, masks["idle"], round(_AROUND_S * frame_rate))
+    masks |= {name: mask & plain for name, mask in changes.items()}
     spans = [span for name, mask in masks.items() for span in _spans(name, mask, shortest)]
     return tuple(sorted(spans, key=lambda span: (span.start, span.name)))
 
@@ -145,15 +148,6 @@ def _gaits(speed: Floats, angle: Floats) -> np.ndarray:
     # slower than this a turn on the spot drifts in any direction
     away = np.where(speed < _ASIDE_SPEED, 0.0, np.abs(angle))
     return np.select([away > _TO_BACK, away > _TO_SIDE], ["backward", "sidestep"], names)
-
-
-def _upright(pose: Pose) -> Flags:
-    """Return where the hips are high and the trunk stands."""
-    positions, _ = kinematics.forward_world(REFERENCE, pose)
-    trunk = positions[:, REFERENCE.index("Neck")] - positions[:, 0]
-    straight = trunk[:, 1] / np.linalg.norm(trunk, axis=-1)
-    height = REFERENCE.offsets[0, 1]
-    return np.asarray((positions[:, 0, 1] > _LOW_HIPS * height) & (straight > _LEANING))
 
 
 def _changes(speed: Floats, idle: Flags, around: int) -> dict[str, Flags]:

@@ -18,6 +18,7 @@ def gliding(
     angle: float = 0.0,
     turning: float = 0.0,
     height: float = 0.95,
+    arms: float = 70.0,
     seconds: float = 6.0,
 ) -> Clip:
     """Return an upright figure that glides.
@@ -27,6 +28,7 @@ def gliding(
         angle: Direction of motion against the facing, degrees, positive to the left.
         turning: Degrees/s, positive to the left.
         height: Of the hips, metres.
+        arms: How far they hang down from a T-pose, degrees.
         seconds: Length.
     """
     t = np.arange(round(60 * seconds)) / 60.0
@@ -37,6 +39,9 @@ def gliding(
     hips = np.cumsum(step, axis=0) + np.array([0.0, height, 0.0])
     rotations = quaternion.identity(len(t), len(REFERENCE), dtype=np.float64)
     rotations[:, 0] = quaternion.from_yaw(yaw)
+    for part, down in {"LeftArm": -arms, "RightArm": arms}.items():
+        turn = quaternion.from_axis_angle((0.0, 0.0, 1.0), np.deg2rad(down))
+        rotations[:, REFERENCE.index(part)] = turn
     pose = extract_root(REFERENCE, hips, rotations, 60.0)
     return Clip("glide", REFERENCE, 60.0, pose, np.zeros((len(t), 4), bool))
 
@@ -60,6 +65,12 @@ def tags_in_the_middle(clip: Clip) -> set[str]:
         (gliding(1.2, turning=80.0), {"walk", "turn", "turn-left"}),
         (gliding(0.0, turning=-80.0), {"idle", "turn", "turn-right"}),
         (gliding(0.5, height=0.4), {"low"}),
+        (gliding(0.1, height=0.75), {"low"}),
+        (gliding(2.5, height=0.75), {"jog"}),
+        (gliding(0.1, height=1.5), {"aloft"}),
+        (gliding(0.5, arms=0.0), {"gesture"}),
+        (gliding(1.5, arms=-60.0), {"gesture"}),
+        (gliding(3.0, arms=-60.0), {"jog"}),
     ],
 )
 def test_motion_tells_the_tag(clip: Clip, tags: set[str]) -> None:
@@ -79,6 +90,23 @@ def test_a_single_step_is_neither_start_nor_stop() -> None:
     """Shifting aside at half a metre per second between two stands is no start."""
     clip = gliding(lambda t: 0.5 * ((t > 2.0) & (t < 3.0)))
     assert not {"start", "stop"} & {span.name for span in measured_tags(clip)}
+
+
+def test_waving_is_no_standing() -> None:
+    """A hand that is faster than a gait swings it takes `idle` away, and only around it."""
+    clip = gliding(0.0)
+    t = np.arange(len(clip)) / 60.0
+    swing = np.where((t > 2.0) & (t < 4.0), 0.8 * np.sin(2.0 * np.pi * 2.0 * t), 0.0)
+    elbow = quaternion.from_axis_angle((0.0, 1.0, 0.0), -0.8 - swing)
+    clip.pose.rotations[:, REFERENCE.index("LeftArm")] = quaternion.multiply(
+        clip.pose.rotations[:, REFERENCE.index("LeftArm")], elbow
+    )
+    spans = measured_tags(clip)
+    wave = next(span for span in spans if span.name == "gesture")
+    assert 1.5 * 60 < wave.start < 2.1 * 60
+    assert 3.9 * 60 < wave.end < 4.5 * 60
+    idle = [(span.start, span.end) for span in spans if span.name == "idle"]
+    assert idle == [(0, wave.start), (wave.end, len(clip))]
 
 
 def test_clips_of_some_kinds_only() -> None:
