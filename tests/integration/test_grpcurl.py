@@ -1,68 +1,99 @@
-"""Humans use grpcurl: it lists, checks, searches and streams without the proto files."""
+"""Humans use grpcurl and `buf curl`: both list, check, ask and stream without the proto files."""
 
 import json
-import shutil
-import subprocess
-import sys
-from pathlib import Path
+from collections.abc import Callable
 
 import pytest
 
+from external import ROOT, buf_curl, grpcurl, needs_buf, needs_grpcurl, objects
 from stridewire_engine.library import Library
 
-BINARY = shutil.which("grpcurl", path=Path(sys.executable).parent) or shutil.which("grpcurl")
-
-pytestmark = pytest.mark.skipif(BINARY is None, reason="grpcurl is not installed")
-
-
-def grpcurl(address: str, *arguments: str, data: str | None = None) -> str:
-    """Run grpcurl against a server and return what it prints."""
-    sent = ["-d", "@"] if data is not None else []
-    done = subprocess.run(
-        [str(BINARY), "-plaintext", *sent, address, *arguments],
-        input=data,
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=30.0,
-    )
-    return done.stdout
+SESSION = (ROOT / "examples" / "grpcurl" / "session.json").read_text()
+ANIMATE = "stridewire.v1.AnimationService/Animate"
+Curl = Callable[[str, str, str], str]
 
 
-def test_services_are_listed(address: str) -> None:
-    """`grpcurl list` names them."""
-    assert "stridewire.v1.AnimationService" in grpcurl(address, "list").splitlines()
+def ask_with_grpcurl(address: str, method: str, data: str) -> str:
+    """Call a method with grpcurl."""
+    return grpcurl(address, method, data=data)
 
 
-def test_health_is_serving(address: str) -> None:
-    """`Health/Check` says SERVING."""
-    assert json.loads(grpcurl(address, "grpc.health.v1.Health/Check")) == {"status": "SERVING"}
-
-
-def test_a_search_is_a_one_liner(address: str, small_library: Library) -> None:
-    """A clip, a time, a velocity: matches come back as JSON."""
-    query = {
-        "pose": {"clip": {"clip": small_library.clips[3].name, "time_s": 1.0}},
-        "motion": {"velocity_z": 1.2},
-        "k": 3,
-    }
-    answer = grpcurl(address, "stridewire.v1.MatchService/Search", data=json.dumps(query))
-    assert len(json.loads(answer)["matches"]) == 3
-
-
-def test_a_stream_comes_from_text(address: str) -> None:
-    """Open, one Step and Close typed as JSON give Opened and a Frame with numbers in it."""
-    messages = [
-        {"open": {"characters": [{"id": 7}]}},
-        {"step": {"step": 1, "dt_s": 0.0166, "velocity_xz": [0, 1.3]}},
-        {"close": {}},
+@pytest.fixture(
+    params=[
+        pytest.param(ask_with_grpcurl, id="grpcurl", marks=needs_grpcurl),
+        pytest.param(buf_curl, id="buf", marks=needs_buf),
     ]
-    text = "\n".join(map(json.dumps, messages))
-    answer = grpcurl(address, "stridewire.v1.AnimationService/Animate", data=text)
-    decoder, position, parts = json.JSONDecoder(), 0, []
-    while position < len(answer.rstrip()):
-        part, position = decoder.raw_decode(answer, position)
-        position += len(answer[position:]) - len(answer[position:].lstrip())
-        parts.append(part)
+)
+def curl(request: pytest.FixtureRequest) -> Curl:
+    """Return a caller of methods by JSON."""
+    made: Curl = request.param
+    return made
+
+
+@needs_grpcurl
+def test_services_are_listed_and_described(address: str) -> None:
+    """`list` names services, `describe` gives a message's fields."""
+    assert "stridewire.v1.AnimationService" in grpcurl(address, "list").splitlines()
+    assert "velocity_xz" in grpcurl(address, "describe", "stridewire.v1.Step")
+
+
+def test_health_is_serving(address: str, curl: Curl) -> None:
+    """`Health/Check` says SERVING."""
+    answer = curl(address, "grpc.health.v1.Health/Check", "{}")
+    assert json.loads(answer) == {"status": "SERVING"}
+
+
+def test_every_query_is_a_one_liner(address: str, curl: Curl, small_library: Library) -> None:
+    """GetInfo, ListLibraries, GetLibrary, ListClips, GetClip, GetSkeleton and Search, as JSON."""
+    name = small_library.clips[3].name
+    library = "stridewire.v1.LibraryService"
+    pose = {"clip": {"clip": name, "time_s": 1.0}}
+    asked = {
+        "stridewire.v1.ServerService/GetInfo": {},
+        f"{library}/ListLibraries": {},
+        f"{library}/GetLibrary": {"name": "small"},
+        f"{library}/ListClips": {"page_size": 2, "tag": "walk"},
+        f"{library}/GetClip": {"span": {"clip": name, "end_s": 0.1}},
+        f"{library}/GetSkeleton": {},
+        "stridewire.v1.MatchService/Search": {"pose": pose, "motion": {"velocity_z": 1}, "k": 3},
+    }
+    answers = {
+        method.partition("/")[2]: json.loads(curl(address, method, json.dumps(query)))
+        for method, query in asked.items()
+    }
+    assert answers["GetInfo"]["libraries"] == answers["ListLibraries"]["libraries"]
+    assert answers["GetLibrary"]["library"]["name"] == "small"
+    assert len(answers["ListClips"]["clips"]) == 2
+    assert answers["GetClip"]["poses"]["frames"] == 7
+    assert len(answers["GetSkeleton"]["skeleton"]["joints"]) == 22
+    assert len(answers["Search"]["matches"]) == 3
+
+
+def test_a_search_by_a_pose_is_pasted(address: str, curl: Curl, small_library: Library) -> None:
+    """A pose that GetClip gave goes into Search as it is."""
+    name = small_library.clips[3].name
+    span = {"span": {"clip": name, "start_s": 0.5, "end_s": 0.5}}
+    clip = json.loads(curl(address, "stridewire.v1.LibraryService/GetClip", json.dumps(span)))
+    query = {"pose": {"inline": clip["poses"]}, "k": 2}
+    answer = curl(address, "stridewire.v1.MatchService/Search", json.dumps(query))
+    assert len(json.loads(answer)["matches"]) == 2
+
+
+def test_a_scripted_session_comes_from_a_file(address: str, curl: Curl) -> None:
+    """The example's session: frames for its steps, an error for its NaN, characters that change."""
+    parts = objects(curl(address, ANIMATE, SESSION))
     assert parts[0]["opened"]["skeleton"]["joints"][0] == "Hips"
-    assert len(parts[1]["frame"]["rotations"]) == 4 * 22
+    frames = [part["frame"] for part in parts if "frame" in part]
+    (error,) = [part["error"] for part in parts if "error" in part]
+    assert [frame.get("appliedStep", frame.get("applied_step")) for frame in frames] == [
+        1,
+        2,
+        3,
+        4,
+        5,
+    ]
+    assert [frame["characters"] for frame in frames] == [[1, 2]] * 2 + [[1, 3]] * 3
+    assert error["step"] == 4
+    assert error["violations"][0]["field"] == "step.velocity_xz[0]"
+    assert frames[-1]["root"][0] == pytest.approx(5.0, abs=0.1)
+    assert len(frames[0]["rotations"]) == 2 * 22 * 4
