@@ -84,6 +84,8 @@ class Awaited:
 
     def __getattr__(self, name: str) -> Any:
         value = getattr(self._target, name)
+        if name == "_transport":
+            return Awaited(self._thread, value)
         return self._blocking(value) if callable(value) else value
 
     def __enter__(self) -> "Awaited":
