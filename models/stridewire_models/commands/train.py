@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from stridewire.motion.mirror import mirror_clip
+from stridewire_models.commands.train_blend import blend
 from stridewire_models.gait.fitting import fit
 from stridewire_models.gait.measuring import Standing, Steps, measure_standing, measure_steps
 from stridewire_models.gait.takes import Take, load_takes, take_files
@@ -15,6 +16,9 @@ from stridewire_models.gait.takes import Take, load_takes, take_files
 @click.group()
 def train() -> None:
     """Train the models that ship."""
+
+
+train.add_command(blend)
 
 
 @train.command()

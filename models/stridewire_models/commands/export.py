@@ -1,0 +1,72 @@
+"""`stridewire export`: from a training run to a file that serves."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import click
+
+from stridewire_engine.evaluation.split_clips import import_clips, split_files
+from stridewire_engine.networks.blend.pairs import Frames
+from stridewire_engine.networks.onnx_model import SUMS
+
+
+@click.group()
+def export() -> None:
+    """Make the files that serve out of training runs."""
+
+
+@export.command()
+@click.argument("run", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.option(
+    "--data",
+    envvar="STRIDEWIRE_DATA",
+    required=True,
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="Folder of the training; says which pairs are too far out. STRIDEWIRE_DATA by default.",
+)
+@click.option(
+    "--out",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="File to write; SHA256SUMS beside it is kept up to date.  [default: RUN/blend.onnx]",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+def blend(run: Path, data: Path, out: Path | None, as_json: bool) -> None:
+    """Export the best weights of a run of `stridewire train blend` as ONNX (needs torch, onnx)."""
+    try:
+        from stridewire_models.blend.export import furthest, read_run, to_onnx
+    except ModuleNotFoundError as error:
+        raise click.ClickException(
+            f"exporting needs {error.name}: pip install 'stridewire[server,train]'"
+        ) from error
+    network, told = read_run(run)
+    files = split_files(data, "cmu", "validation")
+    with click.progressbar(
+        import_clips(files), length=len(files), label="importing validation", hidden=as_json
+    ) as clips:
+        validation = Frames.of(clip for clip in clips if clip is not None)
+    threshold = furthest(network, validation)
+    content = to_onnx(network, int(str(told["seed"])), threshold)
+    path = out or run / "blend.onnx"
+    path.write_bytes(content)
+    digest = hashlib.sha256(content).hexdigest()
+    _list(path.parent / SUMS, path.name, digest)
+    facts = {
+        "file": str(path),
+        "variant": told["variant"],
+        "bytes": len(content),
+        "sha256": digest,
+        "furthest": round(threshold, 3),
+    }
+    click.echo(
+        json.dumps(facts)
+        if as_json
+        else "{file}: {variant}, {bytes} bytes, sha256 {sha256}".format(**facts)
+    )
+
+
+def _list(sums: Path, name: str, digest: str) -> None:
+    """Enter a file's hash into a list that `sha256sum -c` reads."""
+    lines = sums.read_text().splitlines() if sums.is_file() else []
+    others = [line for line in lines if line.split()[1] != name]
+    sums.write_text("\n".join(sorted([*others, f"{digest}  {name}"])) + "\n")
