@@ -100,6 +100,7 @@ class Characters:
     dead_rotations: Quaternions = _column("J", 4)
     dead_velocity: Vectors = _column("1 + J", 3)
     dead_halflife: Vectors = _column("1 + J", 3)
+    body_halflife: Floats = _column("1 + J")
     toe_shown: Vectors = _column(2, 3, dtype=np.float64)
     toe_speed: Vectors = _column(2, 3)
     toe_gap: Vectors = _column(2, 3)

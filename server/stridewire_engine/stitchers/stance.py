@@ -34,8 +34,10 @@ _BRAKE_FROM_S, _BRAKE_S = 0.13, 0.1
 _BRAKE_HALFLIFE = 0.06
 _STRONGEST_PULL = 50.0
 """Towards the clip's toe, m/s²."""
+_STRONGEST_HIPS, _STRONGEST_TURN = 8.0, 25.0
+"""Towards the clip's hips and joints, m/s² and rad/s²; wide offsets take longer."""
 _SWING_SHORTEST, _SWING_LONGEST = 0.06, 0.4
-_HEIGHT_HALFLIFE = 0.1
+_HEIGHT_HALFLIFE = 0.05
 _REACH = 0.985
 _DEEPEST_DROP = 0.08
 _DROP_HALFLIFE = 0.1
@@ -59,10 +61,12 @@ class Stance:
         state.toe_gap[...] = state.toe_shown - roots.to_world(target.toes)
         state.toe_gap_speed += turn_to_world(source.toes_velocity - target.toes_velocity, roots.yaw)
         state.toe_swing[...] = 0.0
+        state.body_halflife[:, 0] = _gentle_halflife(state.offset_hips, _STRONGEST_HIPS)
+        state.body_halflife[:, 1:] = _gentle_halflife(state.offset_rotations, _STRONGEST_TURN)
 
     def apply(self, state: StitchState, sample: Sample, dt: Floats) -> tuple[Vectors, Quaternions]:
         """Spring the body on, move the toes, bend the legs."""
-        offsets.decay(state, _BODY_HALFLIFE, dt)
+        _decay_body(state, sample.legs, dt)
         hips, rotations = offsets.add(state, sample)
         clip = leg_pose(sample.legs, sample.hips, sample.rotations)
         target = self._target(state, sample, clip.toe, dt)
@@ -96,7 +100,7 @@ class Stance:
         state.toe_swing[...] = damper_exact(
             state.toe_swing, 1.0 - planted, _SWING_ONSET, dt[:, None]
         )
-        halflife = np.maximum(halflife, _gentle_halflife(state.toe_gap))
+        halflife = np.maximum(halflife, _gentle_halflife(state.toe_gap, _STRONGEST_PULL))
         halflife = halflife / np.maximum(state.toe_swing, 0.1)
         settled = self._settled(sample)
         halflife = halflife + settled * (_BRAKE_HALFLIFE - halflife)
@@ -169,10 +173,22 @@ def leave(state: StitchState, source: Motion, legs: Legs, rows: Flags) -> None:
     state.offset_angular_velocity[which] = 0.0
 
 
-def _gentle_halflife(gap: Vectors) -> Floats:
-    """Return seconds `(N, 2)` that a gap takes to close without pulling harder than allowed."""
-    width = np.hypot(gap[..., 0], gap[..., 2])
-    return np.asarray(2.0 * _LN2 * np.sqrt(width / _STRONGEST_PULL))
+def _decay_body(state: StitchState, legs: Legs, dt: Floats) -> None:
+    halflife = np.maximum(state.body_halflife, _BODY_HALFLIFE)[..., None]
+    # feet have a pace of their own, and legs that turn slower than they move jerk their knees
+    halflife[:, 1 + np.append(legs.joints, legs.toe)] = _BODY_HALFLIFE
+    state.offset_hips[...], state.offset_hips_velocity[...] = footing.decay(
+        state.offset_hips, state.offset_hips_velocity, halflife[:, 0], dt[:, None]
+    )
+    state.offset_rotations[...], state.offset_angular_velocity[...] = footing.decay(
+        state.offset_rotations, state.offset_angular_velocity, halflife[:, 1:], dt[:, None, None]
+    )
+
+
+def _gentle_halflife(offset: Vectors, strongest: float) -> Floats:
+    """Return seconds `(...)` in which offsets `(..., 3)` decay without pulling harder."""
+    size = np.sqrt(np.sum(offset * offset, axis=-1))
+    return np.asarray(2.0 * _LN2 * np.sqrt(size / strongest))
 
 
 def _drop(state: StitchState, sample: Sample, toes: Toes, dt: Floats) -> Floats:

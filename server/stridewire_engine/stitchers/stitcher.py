@@ -143,6 +143,8 @@ class StitchState:
     """`(N, 1 + J, 3)` of hips and joints then, m/s and rad/s."""
     dead_halflife: Vectors
     """`(N, 1 + J, 3)` seconds, of each axis of the velocity."""
+    body_halflife: Floats
+    """`(N, 1 + J)` seconds, of the springs of hips and joints."""
     toe_shown: Vectors
     """`(N, 2, 3)` world position of the toes in the last frame, float64, whoever planted them."""
     toe_speed: Vectors
