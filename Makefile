@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 STRIDEWIRE_DATA ?= $(abspath ../shared/data)
 export STRIDEWIRE_DATA PROTO_VENV
 
-.PHONY: demo test lint proto show-spine show-search show-import image clean help
+.PHONY: demo test lint proto show-spine show-search show-import show-gait image clean help
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -37,8 +37,11 @@ show-spine: $(VENV)/.dev ## check what the service claims, point by point
 show-search: $(VENV)/.dev ## check what the search claims, up to a million frames
 	$(BIN)/python tests/show/search.py $(SHOW)
 
-show-import: $(VENV)/.dev ## check what import claims, over the whole capture
+show-import: $(VENV)/.dev ## check what import and the synthetic library claim, over the whole capture
 	$(BIN)/python tests/show/importing.py $(SHOW)
+
+show-gait: $(VENV)/.dev ## check what the synthetic library claims alone
+	$(BIN)/python tests/show/gait.py $(SHOW)
 
 image: ## build the container image
 	docker build -t stridewire .

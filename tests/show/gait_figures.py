@@ -104,6 +104,13 @@ def knee_angles(clip: Clip) -> Floats:
     return np.stack(bends, axis=-1)
 
 
+def joint_angles(clip: Clip, joint: str) -> Floats:
+    """Return how far a joint of both sides turns from the T-pose `(2 T,)`, degrees."""
+    columns = REFERENCE.indices((f"Left{joint}", f"Right{joint}"))
+    w = np.abs(clip.pose.rotations[:, columns, 0].astype(np.float64))
+    return np.degrees(2.0 * np.arccos(np.minimum(w, 1.0))).ravel()
+
+
 def smooth_jerk(clip: Clip) -> Floats:
     """Return the mean jerk of the joints `(T,)` after a 0.05 s low-pass, m/s^3."""
     world, _ = local_positions(clip)

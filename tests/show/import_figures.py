@@ -2,9 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
+from capture import capture
 
 from stridewire.formats.reading import read_motion
 from stridewire.motion import kinematics
@@ -12,7 +14,12 @@ from stridewire.motion.array_types import Vectors
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.building.cleaning import leading_pose, mend_spikes
 from stridewire_engine.building.figure import NEXT, SIDES, Figure, direction, see
-from stridewire_engine.building.importing import ACCLAIM_RATE
+from stridewire_engine.building.importing import (
+    ACCLAIM_RATE,
+    Outcome,
+    import_files,
+    motion_files,
+)
 from stridewire_engine.building.onto_reference import find_profile
 from stridewire_engine.building.profiles import shipped_profiles
 from stridewire_engine.building.retarget import retarget
@@ -47,6 +54,12 @@ class Family:
             sum(file.source_slide * file.planted for file in files) / max(planted, 1),
             sum(file.slide * file.planted for file in files) / max(planted, 1),
         )
+
+
+@cache
+def outcomes() -> tuple[Outcome, ...]:
+    """Import every motion file of the capture once."""
+    return tuple(import_files(motion_files([capture()]), jobs=2))
 
 
 def measure(path: Path) -> Family | None:

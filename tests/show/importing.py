@@ -1,87 +1,47 @@
 """What import claims, over every file of the capture.
 
 `STRIDEWIRE_DATA=DIR python tests/show/importing.py`, with the archives or what is in them, and
-`split.csv`. Writes the table of all files to `build/show/import-files.csv` and libraries to
-`build/show/libraries`.
+`split.csv`. Writes the table of all files to `build/show/import-files.csv`, libraries and what was
+streamed from them to `build/show/libraries`. The synthetic library's points (`gait.py`) follow.
 """
 
 import csv
 import os
 import subprocess
 import sys
-import tarfile
-import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import replace
 from pathlib import Path
 
+import gait
 import numpy as np
-from import_figures import Family, measure
+from capture import BUILD, capture
+from import_figures import Family, measure, outcomes
+from import_libraries import libraries, own_file
 from points import ROOT, Point, show
 
 from stridewire.formats.bvh_writing import write_bvh, write_source_bvh
 from stridewire.formats.reading import read_motion
 from stridewire.motion import kinematics
 from stridewire.motion.skeleton import REFERENCE
-from stridewire_engine.building import embedded_library
-from stridewire_engine.building.importing import Outcome, import_file, import_files, motion_files
-from stridewire_engine.library import Library
-
-GIVEN = Path(os.environ.get("STRIDEWIRE_DATA", ""))
-BUILD = ROOT / "build" / "show"
-DATA = GIVEN if (GIVEN / "lafan1").is_dir() else BUILD / "capture"
-LOCOMOTION = ("idle", "walk", "jog", "run", "turn", "start", "stop")
-
-
-@dataclass(frozen=True)
-class Recipe:
-    """How a library of the judge is built."""
-
-    name: str
-    inputs: tuple[str, ...]
-    split: tuple[str, ...]
-    tagged: tuple[str, ...]
-
-
-LIBRARIES = (
-    Recipe("cmu-seen", ("cmu", "cmu-more"), ("train",), LOCOMOTION),
-    Recipe("cmu-heldout", ("cmu", "cmu-more"), ("test",), LOCOMOTION),
-    Recipe("lafan1-dev", ("lafan1",), ("train", "validation"), ()),
-    Recipe("lafan1", ("lafan1",), ("test",), ()),
-)
-
-
-def unpack() -> None:
-    """Unpack the archives where the folders are not there already."""
-    if not (GIVEN / "split.csv").is_file():
-        sys.exit(f"STRIDEWIRE_DATA={GIVEN} holds no capture; name the folder of its archives")
-    for archive in [] if GIVEN == DATA else sorted(GIVEN.glob("*.tar.xz")):
-        if not (DATA / archive.name.removesuffix(".tar.xz")).is_dir():
-            with tarfile.open(archive) as tar:
-                tar.extractall(DATA, filter="data")
-
-
-@cache
-def outcomes() -> tuple[Outcome, ...]:
-    """Import every motion file once."""
-    return tuple(import_files(motion_files([DATA]), jobs=2))
+from stridewire_engine.building.importing import import_file, motion_files
 
 
 def every_file() -> Iterator[Point]:
     """Each file becomes a clip or a sentence."""
-    paths = motion_files([DATA])
+    paths = motion_files([capture()])
     BUILD.mkdir(parents=True, exist_ok=True)
     with (BUILD / "import-files.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(("file", "imported", "profile", "seconds", "notes or reason"))
+        writer.writerow(("file", "imported", "profile", "unit", "seconds", "notes or reason"))
         for outcome in outcomes():
-            name = outcome.path.relative_to(DATA)
+            name = outcome.path.relative_to(capture())
             clip = outcome.clip
-            row = (name, True, outcome.profile, f"{clip.seconds:.2f}") if clip else (name, False)
+            seconds = f"{clip.seconds:.2f}" if clip else ""
             said = "; ".join(outcome.notes) if clip else outcome.problem
-            writer.writerow((*row, *("",) * (4 - len(row)), said))
+            row = (name, clip is not None, outcome.profile, outcome.unit, seconds, said)
+            writer.writerow(row)
     refused = [outcome for outcome in outcomes() if outcome.clip is None]
     known = len(outcomes()) - len(refused)
     yield Point(
@@ -89,6 +49,13 @@ def every_file() -> Iterator[Point]:
         f"{known} imported, {len(refused)} refused of {len(paths)}",
         "none crashes, none missing",
         len(outcomes()) == len(paths) and all(outcome.problem for outcome in refused),
+    )
+    units = Counter(outcome.unit for outcome in outcomes() if outcome.clip)
+    yield Point(
+        "every imported file's unit makes its hips as high as a human's",
+        ", ".join(f"{unit} {count}" for unit, count in units.most_common()),
+        "0.7 to 1.1 m, else refused",
+        "" not in units,
     )
     finite = all(
         np.isfinite(outcome.clip.pose.rotations).all() for outcome in outcomes() if outcome.clip
@@ -149,7 +116,7 @@ def round_trips() -> Iterator[Point]:
 
 def _conversions(path: Path) -> Point:
     worst, files = 0.0, 0
-    for file in motion_files([DATA]):
+    for file in motion_files([capture()]):
         try:
             motion = read_motion(file)
         except ValueError:
@@ -170,39 +137,6 @@ def _conversions(path: Path) -> Point:
     )
 
 
-def libraries() -> Iterator[Point]:
-    """The judge's libraries, one command each."""
-    for recipe in LIBRARIES:
-        out = BUILD / "libraries" / recipe.name
-        command = [Path(sys.executable).with_name("stridewire"), "library", "build"]
-        command += [DATA / part for part in recipe.inputs]
-        command += ["--out", out, "--split-file", GIVEN / "split.csv"]
-        command += [word for split in recipe.split for word in ("--split", split)]
-        command += [word for tag in recipe.tagged for word in ("--tagged", tag)]
-        start = time.monotonic()
-        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
-        seconds = time.monotonic() - start
-        if done.returncode != 0:
-            yield Point(f"library {recipe.name} is built", done.stderr[-200:], "it is", False)
-            continue
-        library = Library.open(out)
-        minutes = sum(clip.frames for clip in library.clips) / library.frame_rate / 60.0
-        yield Point(
-            f"library {recipe.name} by one command",
-            f"{len(library.clips)} clips, {minutes:.1f} min with mirrored copies, {seconds:.0f} s, "
-            f"{seconds / max(minutes / 2.0, 1e-9):.2f} s of building per minute of capture",
-            "it opens",
-            True,
-        )
-    embedded = embedded_library()
-    yield Point(
-        "the synthetic library",
-        f"{len(embedded.clips)} clips",
-        "marked synthetic",
-        embedded.info().synthetic,
-    )
-
-
 def mutated_files() -> Iterator[Point]:
     """20,000 mutated files."""
     environment = {**os.environ, "STRIDEWIRE_FUZZ_FILES": "20000"}
@@ -220,5 +154,6 @@ def mutated_files() -> Iterator[Point]:
 
 
 if __name__ == "__main__":
-    unpack()
-    sys.exit(show("import", [every_file, families, round_trips, libraries, mutated_files]))
+    capture()
+    imported = [every_file, families, round_trips, libraries, own_file, mutated_files]
+    sys.exit(show("import", [*imported, *gait.STAGES]))
