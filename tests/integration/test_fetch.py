@@ -27,6 +27,8 @@ class Server(ThreadingHTTPServer):
 
     files: dict[str, bytes]
     asked: list[tuple[str, str | None]]
+    cut: int = 0
+    """After how many bytes of a motion the connection ends; 0 for never."""
 
 
 class Handler(BaseHTTPRequestHandler):
@@ -46,7 +48,8 @@ class Handler(BaseHTTPRequestHandler):
         self.send_response(206 if begin else 200)
         self.send_header("Content-Length", str(len(body) - start))
         self.end_headers()
-        self.wfile.write(body[start:])
+        cut = self.server.cut if self.path.endswith(".amc") else 0
+        self.wfile.write(body[start : cut or None])
 
     def log_message(self, *_: object) -> None:
         """Say nothing."""
@@ -101,6 +104,32 @@ def test_it_goes_on_where_it_stopped(tmp_path: Path, server: Server) -> None:
     assert result.exit_code == 0, result.output
     assert server.asked == [("/07/07_02.amc", "bytes=40-")]
     assert (tmp_path / "out/07/07_02.amc").read_text() == AMC
+
+
+def test_a_connection_that_ends_early_is_noticed_and_resumed(
+    tmp_path: Path, server: Server
+) -> None:
+    """A motion cut off at the end of a frame would read; its length tells, the rest is fetched."""
+    server.cut = AMC.index("\n2\n") + 1
+    cut = run(tmp_path, server, "--yes")
+    assert cut.exit_code == 1
+    assert f"ended after {server.cut} of {len(AMC)} bytes" in cut.output
+    assert not (tmp_path / "out/07/07_02.amc").exists()
+    rest, server.cut, server.asked = f"bytes={server.cut}-", 0, []
+    assert run(tmp_path, server, "--yes").exit_code == 0
+    assert server.asked == [("/07/07_02.amc", rest)]
+    assert (tmp_path / "out/07/07_02.amc").read_text() == AMC
+
+
+def test_what_is_there_already_is_read_too(tmp_path: Path, server: Server) -> None:
+    """A damaged file of an earlier day is named, dropped and fetched the next time."""
+    assert run(tmp_path, server, "--yes").exit_code == 0
+    motion = tmp_path / "out/07/07_02.amc"
+    motion.write_text("<html>")
+    assert run(tmp_path, server, "--yes").exit_code == 1
+    assert not motion.exists()
+    assert run(tmp_path, server, "--yes").exit_code == 0
+    assert motion.read_text() == AMC
 
 
 def test_what_does_not_read_is_not_kept(tmp_path: Path, server: Server) -> None:

@@ -72,7 +72,8 @@ def find_capture(name: str) -> Capture:
 def fetch(capture: Capture, folder: Path, base_url: str | None = None) -> Iterator[tuple[str, str]]:
     """Fetch what is missing and yield each file's path with its problem, empty where there is none.
 
-    Half-fetched files are continued; each is read, and dropped where that fails. An `index.csv`
+    Half-fetched files are continued; each is read, those that were there already, too, and dropped
+    where that fails. An `index.csv`
     with frame rates and descriptions is written beside them, which `library build` obeys.
 
     Args:
@@ -85,14 +86,12 @@ def fetch(capture: Capture, folder: Path, base_url: str | None = None) -> Iterat
     _write_index(capture, folder)
     for file in capture.files:
         path = folder / file.path
-        if path.exists():
-            yield file.path, ""
-            continue
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            partial = path.with_name(f"{path.name}.part")
-            _download(f"{address}/{file.path}", partial)
-            partial.rename(path)
+            if not path.exists():
+                path.parent.mkdir(parents=True, exist_ok=True)
+                partial = path.with_name(f"{path.name}.part")
+                _download(f"{address}/{file.path}", partial)
+                partial.rename(path)
             _check(path)
         except (OSError, ValueError) as error:
             yield file.path, str(error)
@@ -129,6 +128,9 @@ def _copy(answer: Any, out: Any, url: str) -> None:
                 f"{url}: larger than {_LARGEST >> 20} MiB; is that the right address?"
             )
         out.write(chunk)
+    promised = answer.headers.get("Content-Length")
+    if promised is not None and total < int(promised):
+        raise CaptureError(f"{url}: the connection ended after {total} of {promised} bytes")
 
 
 def _check(path: Path) -> None:
