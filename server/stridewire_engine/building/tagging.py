@@ -87,7 +87,7 @@ def measured_tags(clip: Clip) -> tuple[TagSpan, ...]:
     plain = ~(body.low | body.aloft | body.gesture)
     moving = _settle(speed >= IDLE_SPEED, shortest) & plain
     gait = _settle_labels(_gaits(speed, np.arctan2(velocity[:, 0], velocity[:, 1])), shortest)
-    masks = {name: moving & (gait == name) for name in np.unique(gait)}
+    masks = {str(name): moving & (gait == name) for name in np.unique(gait)}
     side = masks.get("sidestep", np.zeros(len(clip), bool))
     masks |= {
         "idle": plain & ~moving,
