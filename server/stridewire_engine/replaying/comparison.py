@@ -107,8 +107,11 @@ def _angles_apart(a: Frame, b: Frame) -> float:
     here, there = _shared_rows(a, b)
     if a.rotations.shape[1:] != b.rotations.shape[1:] or not len(here):
         return float("nan")
-    dots = np.abs(np.sum(a.rotations[here] * b.rotations[there], axis=-1))
-    return float(np.rad2deg(2.0 * np.arccos(np.clip(dots, 0.0, 1.0))).mean())
+    one, other = a.rotations[here], b.rotations[there]
+    other = other * np.where(np.sum(one * other, axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
+    # unlike the arc cosine of their product this is exact where both are the same
+    apart, together = (np.linalg.norm(v, axis=-1) for v in (one - other, one + other))
+    return float(np.rad2deg(4.0 * np.arctan2(apart, together)).mean())
 
 
 def _shared_rows(a: Frame, b: Frame) -> tuple[np.ndarray, np.ndarray]:

@@ -22,6 +22,8 @@ _GIVING_HALFLIFE = 0.04
 """Damper of the share that a foot has in moving the hips; seconds."""
 _RELEASE_HALFLIFE = 0.06
 """Damper of the correction of a foot that has lifted; seconds."""
+_BUFFER = 0.002
+"""Metres that a leg stays short of full length; the reference's have kept off it before."""
 _SETTLE_HALFLIFE = 0.05
 """Damper that brings a foot that came down too high or too low to the ground; seconds."""
 
@@ -155,6 +157,7 @@ class Posing:
             world[:, self._shin],
             legs.ankle + rest.astype(np.float32),
             poles,
+            _BUFFER,
         )
         world[:, self._foot] = quaternion.multiply(turn, world[:, self._foot])
         world[:, self._thigh], world[:, self._shin] = limb.upper, limb.lower
