@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 STRIDEWIRE_DATA ?= $(abspath ../shared/data)
 export STRIDEWIRE_DATA PROTO_VENV
 
-.PHONY: demo test lint proto show-spine show-search show-import show-gait image clean help
+.PHONY: demo test lint proto show-spine show-search show-import show-gait show-surface reference image clean help
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -42,6 +42,12 @@ show-import: $(VENV)/.dev ## check what import and the synthetic library claim, 
 
 show-gait: $(VENV)/.dev ## check what the synthetic library claims alone
 	$(BIN)/python tests/show/gait.py $(SHOW)
+
+show-surface: $(VENV)/.dev ## check what the interface claims, over the wire and in process
+	PYTHONPATH=tests $(BIN)/python tests/show/surface.py $(SHOW)
+
+reference: $(VENV)/.dev ## write docs/reference.md anew after a change in proto/ or a command
+	$(BIN)/python tests/docs/reference.py > docs/reference.md
 
 image: ## build the container image
 	docker build -t stridewire .
