@@ -51,7 +51,9 @@ def plant(
     lowest = state.root_position[:, None, 1] + _LOWEST_TOE * legs.toe_height
     shown_toe[..., 1] = np.maximum(shown_toe[..., 1], lowest)
     shift = turn_to_root(shown_toe - toe, state.root_yaw).astype(np.float32)
-    bent, ankles = bend(legs, pose, rotations, pose.ankle + shift)
+    bent, ankles = rotations, pose.ankle
+    if not stands.all():
+        bent, ankles = bend(legs, pose, rotations, pose.ankle + shift)
     toes = ankles + (pose.toe - pose.ankle)
     _remember(state, np.concatenate([ankles, toes, hips[:, None]], axis=1), dt)
     _keep_for_stance(state, ~stands)

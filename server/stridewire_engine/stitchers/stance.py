@@ -53,7 +53,7 @@ class Stance:
     settled_s = 2.81 * _BODY_HALFLIFE
     keeps_root_velocity = True
     plants_feet = True
-    looks_ahead: tuple[float, ...] = tuple(i * 2 / 60 for i in range(1, 9))
+    looks_ahead: tuple[float, ...] = (2 / 60, 4 / 60, 7 / 60, 11 / 60, 16 / 60)
 
     def begin(self, state: StitchState, source: Motion, target: Motion, roots: Roots) -> None:
         """Take the offsets over; toes stay where they are, only what they are off by changes."""
