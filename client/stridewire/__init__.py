@@ -9,6 +9,9 @@ _HOME = {
     "Client": "client",
     **dict.fromkeys(
         (
+            "BlendMethod",
+            "BlendQuery",
+            "BlendResult",
             "CharacterSpec",
             "CharacterUpdate",
             "ClipTime",

@@ -6,6 +6,10 @@ from types import TracebackType
 
 from stridewire._base_client import DEFAULT_ADDRESS, opening, search_query, to_clip
 from stridewire._messages import (
+    BlendManyQuery,
+    BlendMethod,
+    BlendQuery,
+    BlendResult,
     CharacterSpec,
     ClipInfo,
     ClipQuery,
@@ -27,12 +31,13 @@ from stridewire._messages import (
 )
 from stridewire._session import Session
 from stridewire._transport import Transport, in_process_transport
+from stridewire.motion.array_types import Floats
 from stridewire.motion.clip import Clip, Pose
 from stridewire.motion.skeleton import Skeleton
 
 
 class Client:
-    """Opens sessions, asks the motion database, reads libraries.
+    """Opens sessions, asks the motion database, blends postures, reads libraries.
 
         with Client("127.0.0.1:50051") as client, client.open_session(characters=4) as session:
             frame = session.step(velocity=(0.0, 1.4))
@@ -145,6 +150,48 @@ class Client:
                 weights=weights,
             )
         )
+
+    def blend(
+        self,
+        start: ClipTime | Pose,
+        end: ClipTime | Pose,
+        weights: Sequence[float] | Floats,
+        *,
+        method: BlendMethod = BlendMethod.AUTO,
+        joint_mask: Mapping[str, float] | None = None,
+        ground_height: float = 0.0,
+        duration_s: float = 0.0,
+    ) -> BlendResult:
+        """Return the postures between two postures.
+
+        Args:
+            start: At weight 0: a moment of a library, or one pose.
+            end: At weight 1; a moment of another clip is moved to the start's root.
+            weights: 1 to 10,000, each from 0 to 1.
+            method: By the network, linear, or by the network where it is sure.
+            joint_mask: Share of the weight that joints take, 0 to 1, by name; 1 where absent.
+            ground_height: Where the feet may stand; metres.
+            duration_s: Seconds between the postures; 0 means what their clip says, else unknown.
+
+        Raises:
+            InvalidRequestError: If a value is not allowed.
+            NotFoundError: If there is no such library or clip.
+        """
+        return self._transport.ask(
+            BlendQuery(start, end, weights, method, joint_mask or {}, ground_height, duration_s)
+        )
+
+    def blend_many(self, requests: Sequence[BlendQuery]) -> tuple[BlendResult, ...]:
+        """Return the postures between many pairs, in one call.
+
+        Args:
+            requests: 1 to 1,000 pairs with 10,000 weights in all.
+
+        Raises:
+            InvalidRequestError: If a value is not allowed.
+            NotFoundError: If there is no such library or clip.
+        """
+        return self._transport.ask(BlendManyQuery(tuple(requests)))
 
     def info(self) -> ServerInfo:
         """Tell versions, libraries, limits."""

@@ -17,11 +17,13 @@ from stridewire.v1 import (
     stitch_pb2,
     stitch_pb2_grpc,
 )
+from stridewire_engine.networks.blend import blend_network
 from stridewire_engine.runtime import Runtime
 from stridewire_server.interceptors import ErrorInterceptor
 from stridewire_server.services.about import ServerService
 from stridewire_server.services.animation import AnimationService
-from stridewire_server.services.later import BlendService, StitchService
+from stridewire_server.services.blend import BlendService
+from stridewire_server.services.later import StitchService
 from stridewire_server.services.library import LibraryService
 from stridewire_server.services.match import MatchService
 from stridewire_server.settings import ServerSettings
@@ -33,13 +35,11 @@ _GRACE_S = 0.5
 _READY = (
     animation_pb2.DESCRIPTOR.services_by_name["AnimationService"].full_name,
     match_pb2.DESCRIPTOR.services_by_name["MatchService"].full_name,
+    blend_pb2.DESCRIPTOR.services_by_name["BlendService"].full_name,
     library_pb2.DESCRIPTOR.services_by_name["LibraryService"].full_name,
     library_pb2.DESCRIPTOR.services_by_name["ServerService"].full_name,
 )
-_LATER = (
-    blend_pb2.DESCRIPTOR.services_by_name["BlendService"].full_name,
-    stitch_pb2.DESCRIPTOR.services_by_name["StitchService"].full_name,
-)
+_LATER = (stitch_pb2.DESCRIPTOR.services_by_name["StitchService"].full_name,)
 
 
 class AnimationServer:
@@ -88,7 +88,7 @@ class AnimationServer:
             LibraryService(ticker.runtime), server
         )
         library_pb2_grpc.add_ServerServiceServicer_to_server(ServerService(ticker), server)
-        blend_pb2_grpc.add_BlendServiceServicer_to_server(BlendService(), server)
+        blend_pb2_grpc.add_BlendServiceServicer_to_server(BlendService(ticker), server)
         stitch_pb2_grpc.add_StitchServiceServicer_to_server(StitchService(), server)
         health_pb2_grpc.add_HealthServicer_to_server(self._health, server)
         health_name = health_pb2.DESCRIPTOR.services_by_name["Health"].full_name
@@ -114,7 +114,12 @@ class AnimationServer:
 
 
 def warm_up(runtime: Runtime) -> None:
-    """Make a first frame from every library, so that no caller pays for pages and caches."""
+    """Make a first frame from every library, so that no caller pays for pages and caches.
+
+    Raises:
+        ModelError: If a network that comes with the package is damaged.
+    """
+    blend_network()
     for name in runtime.libraries:
         session = runtime.open(Open([CharacterSpec(0)], library=name))
         for _ in range(2):

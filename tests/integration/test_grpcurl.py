@@ -93,3 +93,24 @@ def test_a_scripted_session_comes_from_a_file(address: str, curl: Curl) -> None:
     assert error["violations"][0]["field"] == "step.velocity_xz[0]"
     assert frames[-1]["root"][0] == pytest.approx(5.0, abs=0.1)
     assert len(frames[0]["rotations"]) == 2 * 22 * 4
+
+
+def test_a_blend_is_pasted(address: str, curl: Curl, small_library: Library) -> None:
+    """By reference and by the poses that GetClip gave, the same postures come back."""
+    name = small_library.clips[3].name
+
+    def moment(time_s: float) -> dict[str, object]:
+        span = {"span": {"clip": name, "start_s": time_s, "end_s": time_s}}
+        clip = json.loads(curl(address, "stridewire.v1.LibraryService/GetClip", json.dumps(span)))
+        return {"inline": clip["poses"]}
+
+    def blend(start: object, end: object) -> list[float]:
+        query = {"start": start, "end": end, "weights": [0, 0.5, 1], "duration_s": 0.5}
+        answer = curl(address, "stridewire.v1.BlendService/Blend", json.dumps(query))
+        poses: dict[str, list[float]] = json.loads(answer)["poses"]
+        assert len(poses["rotations"]) == 3 * 22 * 4
+        return poses["rotations"]
+
+    referred = [{"clip": {"clip": name, "time_s": time_s}} for time_s in (0.5, 1.0)]
+    by_reference = blend(*referred)
+    assert by_reference == pytest.approx(blend(moment(0.5), moment(1.0)), abs=1e-4)

@@ -4,8 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from stridewire._codec import catalogue, queries
+from stridewire._codec import blends, catalogue, queries
 from stridewire._messages import (
+    BlendManyQuery,
+    BlendQuery,
     ClipQuery,
     ClipsQuery,
     InfoQuery,
@@ -15,7 +17,7 @@ from stridewire._messages import (
     SearchQuery,
     SkeletonQuery,
 )
-from stridewire.v1 import library_pb2, match_pb2
+from stridewire.v1 import blend_pb2, library_pb2, match_pb2
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,7 @@ class Call:
 _SERVER = "/stridewire.v1.ServerService"
 _LIBRARY = "/stridewire.v1.LibraryService"
 _MATCH = "/stridewire.v1.MatchService"
+_BLEND = "/stridewire.v1.BlendService"
 
 CALL_BY_QUERY: dict[type[Query[Any]], Call] = {
     SearchQuery: Call(
@@ -50,6 +53,18 @@ CALL_BY_QUERY: dict[type[Query[Any]], Call] = {
         queries.encode_search,
         match_pb2.SearchResponse.FromString,
         queries.decode_search_result,
+    ),
+    BlendQuery: Call(
+        f"{_BLEND}/Blend",
+        blends.encode_blend,
+        blend_pb2.BlendResponse.FromString,
+        blends.decode_blend_result,
+    ),
+    BlendManyQuery: Call(
+        f"{_BLEND}/BlendMany",
+        blends.encode_blend_many,
+        blend_pb2.BlendManyResponse.FromString,
+        blends.decode_blend_many_result,
     ),
     InfoQuery: Call(
         f"{_SERVER}/GetInfo",

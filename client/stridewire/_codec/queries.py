@@ -1,25 +1,26 @@
 """Search of the motion database."""
 
-import numpy as np
-
-from stridewire._codec.catalogue import decode_poses, encode_poses
 from stridewire._codec.matches import (
     decode_excluded,
     decode_match,
     encode_excluded,
     encode_match,
 )
+from stridewire._codec.pose_sources import (
+    decode_clip_time,
+    decode_pose_source,
+    encode_clip_time,
+    encode_pose_source,
+)
 from stridewire._codec.shared import decode_trajectory, encode_trajectory
 from stridewire._errors import InvalidRequestError, Violation
 from stridewire._messages import (
-    ClipTime,
     DesiredMotion,
     SearchQuery,
     SearchResult,
     Trajectory,
 )
-from stridewire.motion.clip import Pose
-from stridewire.v1 import match_pb2, pose_pb2
+from stridewire.v1 import match_pb2
 
 _DEFAULT_MATCHES = 5
 
@@ -28,11 +29,11 @@ def encode_search(query: SearchQuery) -> match_pb2.SearchRequest:
     """Encode a search."""
     wire = match_pb2.SearchRequest(
         library=query.library,
-        pose=_encode_pose(query.pose),
+        pose=encode_pose_source(query.pose),
         filter=query.filter,
         weights=query.weights,
         k=query.k,
-        exclude=map(_encode_clip_time, query.exclude),
+        exclude=map(encode_clip_time, query.exclude),
     )
     match query.intent:
         case Trajectory():
@@ -49,11 +50,11 @@ def decode_search(wire: match_pb2.SearchRequest) -> SearchQuery:
         InvalidRequestError: If there is no pose or not one pose, or two libraries are named.
     """
     return SearchQuery(
-        pose=_decode_pose(wire.pose),
+        pose=decode_pose_source(wire.pose, "pose"),
         intent=_decode_intent(wire),
         k=wire.k or _DEFAULT_MATCHES,
         library=_only_library(wire),
-        exclude=tuple(map(_decode_clip_time, wire.exclude)),
+        exclude=tuple(map(decode_clip_time, wire.exclude)),
         filter=wire.filter,
         weights=dict(wire.weights),
     )
@@ -79,50 +80,6 @@ def decode_search_result(wire: match_pb2.SearchResponse) -> SearchResult:
         tuple(map(decode_excluded, wire.excluded)),
         wire.exact,
     )
-
-
-def _encode_pose(pose: ClipTime | Pose) -> pose_pb2.PoseSource:
-    if isinstance(pose, ClipTime):
-        return pose_pb2.PoseSource(clip=_encode_clip_time(pose))
-    return pose_pb2.PoseSource(inline=encode_poses(pose[np.newaxis]))
-
-
-def _decode_pose(wire: pose_pb2.PoseSource) -> ClipTime | Pose:
-    match wire.WhichOneof("source"):
-        case "clip":
-            return _decode_clip_time(wire.clip)
-        case "inline":
-            return _decode_inline(wire.inline)
-    raise InvalidRequestError.of(
-        Violation("pose", "absent; give the clip and the time to continue from, or a pose inline")
-    )
-
-
-def _decode_inline(wire: pose_pb2.Poses) -> Pose:
-    if wire.frames != 1:
-        raise InvalidRequestError.of(
-            Violation("pose.inline.frames", f"{wire.frames}; a pose to continue from is 1 frame")
-        )
-    wrong = [
-        Violation(f"pose.inline.{name}", f"{len(values)} values for 1 frame; expected {expected}")
-        for name, values, expected, fits in (
-            ("root", wire.root, "7", len(wire.root) == 7),
-            ("hips", wire.hips, "3", len(wire.hips) == 3),
-            ("rotations", wire.rotations, "4 a joint", len(wire.rotations) % 4 == 0),
-        )
-        if not fits
-    ]
-    if wrong:
-        raise InvalidRequestError.of(*wrong)
-    return decode_poses(wire)[0]
-
-
-def _encode_clip_time(moment: ClipTime) -> pose_pb2.ClipTime:
-    return pose_pb2.ClipTime(clip=moment.clip, time_s=moment.time_s)
-
-
-def _decode_clip_time(wire: pose_pb2.ClipTime) -> ClipTime:
-    return ClipTime(wire.clip, wire.time_s)
 
 
 def _decode_intent(wire: match_pb2.SearchRequest) -> Trajectory | DesiredMotion | None:

@@ -6,6 +6,7 @@ same. Field paths in errors are those of the wire.
 """
 
 from stridewire._messages.about import LibraryInfo, Limits, ServerInfo
+from stridewire._messages.blends import BlendManyQuery, BlendMethod, BlendQuery, BlendResult
 from stridewire._messages.characters import CharacterSpec, CharacterUpdate, Edit
 from stridewire._messages.controls import (
     CorrectionMode,
@@ -60,6 +61,10 @@ from stridewire._messages.session import (
 
 __all__ = [
     "AnswerT",
+    "BlendManyQuery",
+    "BlendMethod",
+    "BlendQuery",
+    "BlendResult",
     "CharacterSpec",
     "CharacterUpdate",
     "ClientMessage",

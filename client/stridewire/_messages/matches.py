@@ -10,6 +10,8 @@ class ClipTime:
 
     clip: str
     time_s: float
+    library: str = ""
+    """Name of the clip's library; empty means the default, or the one that is searched."""
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ from stridewire.v1 import blend_pb2 as stridewire_dot_v1_dot_blend__pb2
 
 
 class BlendServiceStub(object):
-    """Answers "which posture lies between these two?". Not implemented yet: answered UNIMPLEMENTED.
+    """Answers "which posture lies between these two?". Weight 0 gives the start and 1 the end, as they
+    were given; between them the answer is continuous in the weight.
     """
 
     def __init__(self, channel):
@@ -28,7 +29,8 @@ class BlendServiceStub(object):
 
 
 class BlendServiceServicer(object):
-    """Answers "which posture lies between these two?". Not implemented yet: answered UNIMPLEMENTED.
+    """Answers "which posture lies between these two?". Weight 0 gives the start and 1 the end, as they
+    were given; between them the answer is continuous in the weight.
     """
 
     def Blend(self, request, context):
@@ -66,7 +68,8 @@ def add_BlendServiceServicer_to_server(servicer, server):
 
  # This class is part of an EXPERIMENTAL API.
 class BlendService(object):
-    """Answers "which posture lies between these two?". Not implemented yet: answered UNIMPLEMENTED.
+    """Answers "which posture lies between these two?". Weight 0 gives the start and 1 the end, as they
+    were given; between them the answer is continuous in the weight.
     """
 
     @staticmethod

@@ -4,6 +4,7 @@ import io
 import json
 import warnings
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +20,7 @@ from stridewire_models.blend.networks import SHAPES, Correction, Paper, new_netw
 from stridewire_models.blend.training import BEST, CONFIGURATION
 
 _OPSET = 17
-_FURTHEST_SHARE = 99.9
-_MARGIN = 1.2
+_REACH = 1.5
 _PAIRS = 20_000
 
 
@@ -47,21 +47,32 @@ def read_run(folder: Path) -> tuple[Correction | Paper, Mapping[str, object]]:
     return network, told
 
 
-def furthest(network: Correction | Paper, validation: Frames) -> float:
-    """Return the distance that all but a thousandth of validation pairs stay below, and a fifth."""
-    pairs = flatten(validation.draw(np.random.default_rng(1), _PAIRS, 1))
-    with torch.no_grad():
-        _, distance = network(torch.from_numpy(_inputs(network, pairs)))
-    return float(np.percentile(distance.numpy(), _FURTHEST_SHARE)) * _MARGIN
+@dataclass(frozen=True)
+class Statistics:
+    """What is known of the training data, and told with the network."""
+
+    furthest: float
+    """Distance from it beyond which the network is not to be used."""
+    deviation: Floats
+    """`(135,)` standard deviations of postures as the paper writes them."""
+
+    @staticmethod
+    def of(network: Correction | Paper, train: Frames) -> "Statistics":
+        """Take them: the network reaches half as far again as the farthest training pair."""
+        pairs = flatten(train.draw(np.random.default_rng(1), _PAIRS, 1))
+        with torch.no_grad():
+            _, distance = network(torch.from_numpy(_inputs(network, pairs)))
+        deviation = features.write_postures(pairs.truth[:, 0]).std(axis=0)
+        return Statistics(_REACH * float(distance.max()), deviation)
 
 
-def to_onnx(network: Correction | Paper, seed: int, threshold: float) -> bytes:
+def to_onnx(network: Correction | Paper, seed: int, statistics: Statistics) -> bytes:
     """Return the ONNX file of a network.
 
     Args:
         network: Trained.
         seed: That it was trained with.
-        threshold: Distance from the training data beyond which not to use it.
+        statistics: Of the data that it was trained on.
     """
     variant = "paper" if isinstance(network, Paper) else "correction"
     shape = SHAPES[variant]
@@ -80,12 +91,20 @@ def to_onnx(network: Correction | Paper, seed: int, threshold: float) -> bytes:
             dynamic_axes={name: {0: "batch"} for name in ("pairs", shape.output, "distance")},
         )
     model = onnx.load_from_string(file.getvalue())
-    more = {"seed": str(seed), "furthest": f"{threshold:.4f}"}
+    more = {
+        "seed": str(seed),
+        "furthest": f"{statistics.furthest:.4f}",
+        "deviation": _list(statistics.deviation),
+    }
     if isinstance(network, Correction):
-        more["bounds"] = json.dumps([round(float(b), 5) for b in network.bounds.tolist()])
+        more["bounds"] = _list(network.bounds.numpy())
     onnx.helper.set_model_props(model, facts(variant, **more))
     data: bytes = model.SerializeToString()
     return data
+
+
+def _list(values: Floats) -> str:
+    return json.dumps([round(float(value), 5) for value in values])
 
 
 def _inputs(network: Correction | Paper, pairs: Pairs) -> Floats:

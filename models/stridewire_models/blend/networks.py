@@ -14,6 +14,8 @@ from stridewire_engine.networks.blend.features import INPUTS, PAPER_INPUTS, POST
 WIDTH = 512
 _LAYERS = 3
 _COMPONENTS = 64
+_STILL = 0.05
+"""Inputs that vary less are not blown up: some people's joints do what these never do."""
 VARIANTS = ("correction", "paper")
 """The first is what ships."""
 
@@ -81,7 +83,7 @@ class Blend(nn.Module):
 
     def fit(self, examples: Floats) -> None:
         """Take statistics of inputs `(N, D)` of the training data."""
-        mean, deviation = examples.mean(0), np.maximum(examples.std(0), 1e-3)
+        mean, deviation = examples.mean(0), np.maximum(examples.std(0), _STILL)
         self.mean.copy_(torch.tensor(mean))
         self.deviation.copy_(torch.tensor(deviation))
         self.novelty.fit(((examples - mean) / deviation).astype(np.float64))

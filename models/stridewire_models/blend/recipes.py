@@ -36,11 +36,11 @@ class Recipe:
 
 
 RECIPES = {
-    "correction": Recipe("correction", (Phase(18_000, 256, 4, 1e-3, 0.1, 1_000),), 1e-2, 0.999),
+    "correction": Recipe("correction", (Phase(10_000, 256, 4, 1e-3, 0.1, 1_000),), 1e-2, 0.999),
     # two phases, the second to fine-tune (Gaisbauer et al. 2019, section 3.4)
     "paper": Recipe(
         "paper",
-        (Phase(120_000, 32, 1, 1e-3, 0.0, 30), Phase(100, 30_000, 1, 1e-3, 0.0, 10)),
+        (Phase(60_000, 32, 1, 1e-3, 0.0, 30), Phase(50, 30_000, 1, 1e-3, 0.0, 10)),
         0.0,
         0.0,
     ),

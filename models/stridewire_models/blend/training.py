@@ -187,8 +187,8 @@ class Run:
             x = features.paper_inputs(pairs.start, pairs.end, pairs.weights[:, 0])
             self.network.aim(features.write_postures(pairs.truth[:, 0]))
         else:
-            # where the duration is hidden it is 0: novelty is judged with it told
-            x = features.inputs(pairs.start, pairs.end, pairs.duration)
+            told = np.random.default_rng(1).random(len(pairs)) >= _HIDE_TIME
+            x = features.inputs(pairs.start, pairs.end, pairs.duration * told)
             self.network.bound(*_corrections(pairs))
         self.network.fit(x)
 

@@ -34,19 +34,19 @@ def export() -> None:
 def blend(run: Path, data: Path, out: Path | None, as_json: bool) -> None:
     """Export the best weights of a run of `stridewire train blend` as ONNX (needs torch, onnx)."""
     try:
-        from stridewire_models.blend.export import furthest, read_run, to_onnx
+        from stridewire_models.blend.export import Statistics, read_run, to_onnx
     except ModuleNotFoundError as error:
         raise click.ClickException(
             f"exporting needs {error.name}: pip install 'stridewire[server,train]'"
         ) from error
     network, told = read_run(run)
-    files = split_files(data, "cmu", "validation")
+    files = split_files(data, "cmu", "train")
     with click.progressbar(
-        import_clips(files), length=len(files), label="importing validation", hidden=as_json
+        import_clips(files), length=len(files), label="importing train", hidden=as_json
     ) as clips:
-        validation = Frames.of(clip for clip in clips if clip is not None)
-    threshold = furthest(network, validation)
-    content = to_onnx(network, int(str(told["seed"])), threshold)
+        train = Frames.of((clip for clip in clips if clip is not None), mirror=True)
+    statistics = Statistics.of(network, train)
+    content = to_onnx(network, int(str(told["seed"])), statistics)
     path = out or run / "blend.onnx"
     path.write_bytes(content)
     digest = hashlib.sha256(content).hexdigest()
@@ -56,7 +56,7 @@ def blend(run: Path, data: Path, out: Path | None, as_json: bool) -> None:
         "variant": told["variant"],
         "bytes": len(content),
         "sha256": digest,
-        "furthest": round(threshold, 3),
+        "furthest": round(statistics.furthest, 3),
     }
     click.echo(
         json.dumps(facts)

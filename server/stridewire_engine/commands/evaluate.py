@@ -2,6 +2,7 @@
 
 import click
 
+from stridewire_engine.commands.evaluate_blend import blend
 from stridewire_engine.commands.evaluate_stream import stream
 
 
@@ -10,4 +11,5 @@ def evaluate() -> None:
     """Measure how good motion is."""
 
 
+evaluate.add_command(blend)
 evaluate.add_command(stream)

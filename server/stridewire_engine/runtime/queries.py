@@ -67,6 +67,10 @@ def row_of(library: Library, path: str, moment: ClipTime) -> int:
         NotFoundError: If there is no such clip.
         InvalidRequestError: If the time lies outside of it.
     """
+    if moment.library not in ("", library.name):
+        raise InvalidRequestError.of(
+            Violation(f"{path}.library", f"{moment.library!r}; searched is {library.name!r}")
+        )
     entry = library.entry(moment.clip)
     length = (entry.frames - 1) / library.frame_rate
     if not 0.0 <= moment.time_s <= length:

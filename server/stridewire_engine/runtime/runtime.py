@@ -16,6 +16,8 @@ from stridewire import __version__
 from stridewire._errors import NotFoundError
 from stridewire._messages import (
     AnswerT,
+    BlendManyQuery,
+    BlendQuery,
     ClipQuery,
     ClipsQuery,
     Edit,
@@ -37,7 +39,9 @@ from stridewire._messages import (
 )
 from stridewire.formats.session_file import SessionWriter
 from stridewire.motion.array_types import Floats
+from stridewire_engine import blending
 from stridewire_engine.library import Library, LibraryError
+from stridewire_engine.networks.blend import blend_network
 from stridewire_engine.runtime import admission, catalogue, queries
 from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.output import Output
@@ -221,7 +225,7 @@ class Runtime:
         return ServerInfo(
             version=__version__,
             libraries=tuple(library.info() for library in self.libraries.values()),
-            models={},
+            models={"blend": blend_network().model.hash},
             limits=self._limits,
             stitchers=admission.STITCHER_NAMES,
             sessions=len(self._sessions),
@@ -232,6 +236,10 @@ class Runtime:
         match query:
             case SearchQuery():
                 return self.search(query)
+            case BlendQuery():
+                return blending.answer(self.library, query)
+            case BlendManyQuery():
+                return blending.answer_many(self.library, query)
             case InfoQuery():
                 return self.info()
             case LibrariesQuery():

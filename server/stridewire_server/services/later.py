@@ -3,20 +3,7 @@
 from typing import Any, NoReturn
 
 from stridewire._errors import NotImplementedYetError
-from stridewire.v1.blend_pb2_grpc import BlendServiceServicer
 from stridewire.v1.stitch_pb2_grpc import StitchServiceServicer
-
-
-class BlendService(BlendServiceServicer):
-    """Will answer "which posture lies between these two?"."""
-
-    async def Blend(self, request: Any, context: Any) -> NoReturn:
-        """Refuse."""
-        raise _later("BlendService.Blend")
-
-    async def BlendMany(self, request: Any, context: Any) -> NoReturn:
-        """Refuse."""
-        raise _later("BlendService.BlendMany")
 
 
 class StitchService(StitchServiceServicer):
@@ -29,6 +16,6 @@ class StitchService(StitchServiceServicer):
 
 def _later(method: str) -> NotImplementedYetError:
     return NotImplementedYetError(
-        f"{method} is not implemented yet; this server streams characters (AnimationService) and "
-        "searches libraries (MatchService)"
+        f"{method} is not implemented yet; this server streams characters (AnimationService), "
+        "searches libraries (MatchService) and blends postures (BlendService)"
     )

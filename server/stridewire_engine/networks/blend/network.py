@@ -50,14 +50,16 @@ class BlendNetwork:
             ModelError: If it was made for other features, another skeleton or another network.
         """
         model.require(facts("correction"))
-        bounds = np.array(json.loads(model.facts["bounds"]), np.float32)
-        if model.inputs != features.INPUTS or bounds.shape != (CHANNELS,):
+        if model.inputs != features.INPUTS:
             raise ModelError(
-                f"{model.name} reads {model.inputs} numbers and bounds {bounds.shape}; expected "
-                f"{features.INPUTS} and {CHANNELS}: export it again"
+                f"{model.name} reads {model.inputs} numbers, expected {features.INPUTS}; "
+                "export it again"
             )
         self.model = model
-        self.bounds = bounds
+        self.bounds = _numbers(model, "bounds", CHANNELS)
+        """`(CHANNELS,)` largest corrections; metres, radians."""
+        self.deviation = _numbers(model, "deviation", features.POSTURE_SIZE)
+        """`(135,)` standard deviations of postures, as the paper writes them, in training."""
         self.furthest = float(model.facts["furthest"])
         """Distance from the training data beyond which its answer is not to be used."""
 
@@ -117,6 +119,15 @@ def load_network(path: Path) -> BlendNetwork | PaperNetwork:
     """
     model = OnnxModel(path.name, path.read_bytes())
     return PaperNetwork(model) if model.facts.get("variant") == "paper" else BlendNetwork(model)
+
+
+def _numbers(model: OnnxModel, name: str, count: int) -> Floats:
+    values = np.array(json.loads(model.facts.get(name, "[]")), np.float32)
+    if values.shape != (count,):
+        raise ModelError(
+            f"{model.name} has {values.size} {name}, expected {count}; export it again"
+        )
+    return values
 
 
 def joint_weights(weights: Floats, mask: Mapping[str, float] | None = None) -> Floats:
