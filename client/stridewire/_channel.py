@@ -65,7 +65,8 @@ def to_error(
     code: grpc.StatusCode, message: str | None, metadata: Any, address: str
 ) -> StridewireError:
     """Return what a status with its message and trailing metadata means."""
-    details: bytes | None = dict(metadata or ()).get(DETAILS_KEY)
+    # asyncio's metadata looks like a mapping, but old versions of it cannot be made a dict of
+    details: bytes | None = {key: value for key, value in metadata or ()}.get(DETAILS_KEY)
     if code is grpc.StatusCode.UNAVAILABLE and details is None:  # not said by our server
         message = f"no connection to {address} ({message}); `stridewire serve` starts a server"
     return decode_error(code.name, message or "", details)
