@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 STRIDEWIRE_DATA ?= $(abspath ../shared/data)
 export STRIDEWIRE_DATA PROTO_VENV
 
-.PHONY: demo test lint proto show-spine show-search show-import show-gait show-surface reference image clean help
+.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface reference image clean help
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -42,6 +42,9 @@ show-import: $(VENV)/.dev ## check what import and the synthetic library claim, 
 
 show-gait: $(VENV)/.dev ## check what the synthetic library claims alone
 	$(BIN)/python tests/show/gait.py $(SHOW)
+
+show-blend: $(VENV)/.dev ## check what posture blending claims, on people that its network never saw
+	$(BIN)/python tests/show/blend.py $(SHOW)
 
 show-surface: $(VENV)/.dev ## check what the interface claims, over the wire and in process
 	PYTHONPATH=tests $(BIN)/python tests/show/surface.py $(SHOW)
