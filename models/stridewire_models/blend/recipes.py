@@ -36,7 +36,7 @@ class Recipe:
 
 
 RECIPES = {
-    "correction": Recipe("correction", (Phase(10_000, 256, 4, 1e-3, 0.1, 1_000),), 1e-2, 0.999),
+    "correction": Recipe("correction", (Phase(6_000, 256, 4, 1e-3, 0.1, 1_000),), 1e-2, 0.999),
     # two phases, the second to fine-tune (Gaisbauer et al. 2019, section 3.4)
     "paper": Recipe(
         "paper",

@@ -126,7 +126,7 @@ class Run:
     @torch.no_grad()
     def _look(self) -> None:
         """Judge on the validation data; keep the weights where they are the best so far."""
-        network = self.judged
+        network = self.judged.eval()
         if isinstance(network, Paper):
             loss = float(paper_loss(network, self._validation))
         else:
@@ -136,6 +136,7 @@ class Run:
         if loss < self.progress.best:
             self.progress.best, self.progress.since_best = loss, 0
             torch.save(network.state_dict(), self.folder / BEST)
+        self.network.train()
         now = {"step": self.progress.step, "validation": loss, "cpu_s": self.progress.cpu_s}
         self.progress.curve.append(now)
         (self.folder / CURVE).write_text(json.dumps(self.progress.curve) + "\n")
@@ -164,6 +165,7 @@ class Run:
             "optimiser": self._optimiser.state_dict(),
             "schedule": self._schedule.state_dict(),
             "rng": self._rng.bit_generator.state,
+            "torch_rng": torch.get_rng_state(),
         }
         fresh = self.folder / f"{CHECKPOINT}.new"
         torch.save(state, fresh)
@@ -175,6 +177,7 @@ class Run:
         self.network.load_state_dict(state["network"])
         self.average.load_state_dict(state["average"])
         self._rng.bit_generator.state = state["rng"]
+        torch.set_rng_state(state["torch_rng"])
         if self.progress.phase < len(self.recipe.phases):
             self._begin_phase()
             self._optimiser.load_state_dict(state["optimiser"])

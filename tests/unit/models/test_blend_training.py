@@ -93,7 +93,7 @@ def run(
 ) -> Run:
     """Return a run of a few steps of each variant."""
     folder = tmp_path_factory.mktemp(request.param)
-    trained = Run(folder, recipe(request.param, 40), frames, frames, 0)
+    trained = Run(folder, recipe(request.param, 120), frames, frames, 0)
     trained.train(lambda done: None, 8)
     return trained
 
