@@ -147,7 +147,7 @@ def mutated_files() -> Iterator[Point]:
     )
     yield Point(
         "20,000 mutated files: a clear error or a finite clip",
-        done.stdout.strip().split("\n")[-1],
+        "none breaks them" if done.returncode == 0 else done.stdout.strip()[-300:],
         "no other exception, no hang, no NaN",
         done.returncode == 0,
     )
