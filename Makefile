@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 STRIDEWIRE_DATA ?= $(abspath ../shared/data)
 export STRIDEWIRE_DATA PROTO_VENV
 
-.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface reference image clean help
+.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge reference image clean help
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -48,6 +48,9 @@ show-blend: $(VENV)/.dev ## check what posture blending claims, on people that i
 
 show-surface: $(VENV)/.dev ## check what the interface claims, over the wire and in process
 	PYTHONPATH=tests $(BIN)/python tests/show/surface.py $(SHOW)
+
+show-judge: $(VENV)/.dev ## check how good streamed motion is, beside the captured and a naive baseline
+	$(BIN)/python tests/show/judge.py $(SHOW)
 
 reference: $(VENV)/.dev ## write docs/reference.md anew after a change in proto/ or a command
 	$(BIN)/python tests/docs/reference.py > docs/reference.md
