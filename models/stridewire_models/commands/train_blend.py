@@ -50,7 +50,6 @@ def blend(data: Path, out: Path, variant: str, seed: int, steps: int | None, as_
             f"training needs {error.name}: pip install 'stridewire[server,train]'"
         ) from error
     torch.set_num_threads(1)
-    torch.set_flush_denormal(True)
     recipe = RECIPES[variant]
     if steps is not None:
         phases = tuple(replace(phase, steps=min(steps, phase.steps)) for phase in recipe.phases)
@@ -59,8 +58,13 @@ def blend(data: Path, out: Path, variant: str, seed: int, steps: int | None, as_
     train = Frames.of(_clips(data, "train", as_json), mirror=True)
     validation = Frames.of(_clips(data, "validation", as_json))
     run = Run(out, recipe, train, validation, seed)
-    with click.progressbar(length=recipe.steps, label="training", hidden=as_json) as bar:
-        run.train(bar.update, _LOOK_EVERY)
+    # the setting is the thread's, so that it must not outlive the training
+    torch.set_flush_denormal(True)
+    try:
+        with click.progressbar(length=recipe.steps, label="training", hidden=as_json) as bar:
+            run.train(bar.update, _LOOK_EVERY)
+    finally:
+        torch.set_flush_denormal(False)
     facts = {
         "out": str(out),
         "variant": variant,
