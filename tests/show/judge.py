@@ -82,13 +82,18 @@ def run(name: str, ways: Sequence[Cell], scripts: Sequence[str] = SCRIPTS) -> li
 def keep(found: Iterator[dict[str, Any]]) -> None:
     """Add rows to the results; those of the same cells are replaced."""
     kept = json.loads(RESULTS.read_text())["rows"] if RESULTS.exists() else []
-    new = [row for row in found if row.get("script", "all") in ("all", "tuned", "kept-out")]
+    new = [row for row in found if _quoted(row)]
     names = {_identity(row) for row in new}
     table = [row for row in kept if _identity(row) not in names] + new
     RESULTS.parent.mkdir(parents=True, exist_ok=True)
     settings = {"version": __version__, "command": "make show-judge", "seeds": "100-119"}
     lines = ",\n".join(json.dumps(row) for row in table)
     RESULTS.write_text(f'{{"settings": {json.dumps(settings)}, "rows": [\n{lines}\n]}}\n')
+
+
+def _quoted(row: dict[str, Any]) -> bool:
+    script, block = row.get("script", "all"), row.get("block", "all")
+    return script == "all" or (script in ("tuned", "kept-out") and block == "all")
 
 
 def _identity(row: dict[str, Any]) -> tuple[Any, ...]:
@@ -202,10 +207,10 @@ def responses() -> Iterator[Point]:
         for row in measure_responses(Bench(library(name).path), TickSettings()):
             keep(iter([row]))
             own = row["library_p25_s"]
+            theirs = "not in the library" if own is None else f"the library's own {own:.2f} s"
             yield Point(
                 f"{row['change']}, {name}",
-                f"{row['response_s']:.2f} s, the library's own {own or float('nan'):.2f} s "
-                f"({row['events']} events)",
+                f"{row['response_s']:.2f} s, {theirs} ({row['events']} events)",
                 "within 1.15 times the library's 25th percentile",
                 own is None or row["response_s"] <= 1.15 * own,
             )

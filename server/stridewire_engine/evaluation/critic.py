@@ -147,7 +147,8 @@ def _features(positions: Vectors, root: Vectors, turn: Quaternions) -> Floats:
     velocity = np.gradient(local, axis=1) * RATE
     acceleration = np.gradient(velocity, axis=1) * RATE
     parts = [part[:, ::_STRIDE] for part in (local, velocity, acceleration)]
-    return np.concatenate(parts, axis=-1).reshape(len(local), -1).astype(np.float32)
+    flat = np.concatenate(parts, axis=-1).astype(np.float32)
+    return flat.reshape(len(local), int(np.prod(flat.shape[1:])))
 
 
 def _thinned(features: Floats, rng: np.random.Generator) -> Floats:

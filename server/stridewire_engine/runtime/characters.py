@@ -111,8 +111,6 @@ class Characters:
     hip_drop: Floats = _column()
     hip_drop_speed: Floats = _column()
     legs_shown: Quaternions = _column(6, 4)
-    replant_time: Floats = _column(2, fill=-1)
-    replant_from: Vectors = _column(2, 3)
     stitched_by: Indices = _column(dtype=np.int8)
     """Index of the stitcher that hides the last transition; a change counts from the next."""
 

@@ -2,8 +2,8 @@
 
 The body is inertialized by springs. Toes stand where they stand while the clip's labels say so and
 close what they are off by in their next swing (`footing`); legs bend accordingly; the hips drop,
-looking ahead, where legs would be too short; a foot that closes a gap is lifted a little; one that
-stands off its place for long, because the clip stands, is lifted and put right.
+looking ahead, and heels rise where legs would be too short; a foot that closes a gap is lifted a
+little. A foot that stands off its place stays there until the clip takes a step.
 """
 
 import numpy as np

@@ -165,10 +165,6 @@ class StitchState:
     """`(N,)`."""
     legs_shown: Quaternions
     """`(N, 6, 4)` rotations of both thighs, shins and feet, where the stitcher bent them."""
-    replant_time: Floats
-    """`(N, 2)` seconds since a foot that stood off its place was lifted; below 0 if none was."""
-    replant_from: Vectors
-    """`(N, 2, 3)` gap at that time."""
 
     def take(self, rows: slice | Indices) -> "StitchState":
         """Return the rows: a view for a slice, a copy for indices."""
@@ -181,8 +177,8 @@ class StitchState:
 
     def clear(self, rows: Flags) -> None:
         """Forget everything about some characters."""
-        for name, array in vars(self).items():
-            array[rows] = -1.0 if name == "replant_time" else 0.0
+        for array in vars(self).values():
+            array[rows] = 0.0
 
 
 STITCH_COLUMNS = tuple(field.name for field in fields(StitchState))
