@@ -76,7 +76,7 @@ def stalled() -> Iterator[Point]:
         after = next(frames)
         call.cancel()
     text = f"{grown:+.1f} MB in 10 s of 256 characters unread (390 MB of frames)"
-    yield Point("memory beside a stalled client", text, "bounded", abs(grown) < 8.0)
+    yield Point("memory beside a stalled client", text, "bounded", grown < 8.0)
     skipped = after.frame - last.frame - 1
     text = f"frame {last.frame}, then {after.frame}; {after.dropped} dropped"
     newest = after.dropped == skipped > 500
