@@ -38,7 +38,15 @@ ENGINE_FLOORS = {
 
 THIRD_PARTY = {
     "stridewire": {"click", "google", "grpc", "matplotlib", "mpl_toolkits", "numpy"},
-    "stridewire_engine": {"click", "faiss", "matplotlib", "numpy", "onnxruntime", "scipy", "sklearn"},
+    "stridewire_engine": {
+        "click",
+        "faiss",
+        "matplotlib",
+        "numpy",
+        "onnxruntime",
+        "scipy",
+        "sklearn",
+    },
     "stridewire_server": {
         "click",
         "google",
