@@ -4,33 +4,35 @@ A million frames are made of captured clips by playing them at other speeds, tur
 copy by a few degrees, and mirroring: other motion, but no new capture.
 """
 
+import subprocess
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from itertools import count
 
-import importing
 import numpy as np
+from capture import BUILD
+from import_libraries import LIBRARIES
 
 from stridewire.motion import quaternion
 from stridewire.motion.clip import Clip
 from stridewire_engine.building import FRAME_RATE, build_library
 from stridewire_engine.library import Library, LibraryError
 
-FOLDER = importing.BUILD / "libraries"
+FOLDER = BUILD / "libraries"
 MILLION = 1_000_000
 
 
 @cache
 def captured(name: str) -> Library:
-    """Open a library of the judge's, building all of them where one is missing."""
+    """Open a library of the judge's, building it where it is missing."""
+    path = FOLDER / name
     try:
-        return Library.open(FOLDER / name)
+        return Library.open(path)
     except LibraryError:
-        importing.unpack()
-        for _ in importing.libraries():
-            pass
-        return Library.open(FOLDER / name)
+        recipe = next(recipe for recipe in LIBRARIES if recipe.name == name)
+        subprocess.run(list(map(str, recipe.command(path))), check=True)
+        return Library.open(path)
 
 
 @cache
