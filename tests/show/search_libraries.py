@@ -5,6 +5,7 @@ copy by a few degrees, and mirroring: other motion, but no new capture.
 """
 
 import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
@@ -31,7 +32,8 @@ def captured(name: str) -> Library:
         return Library.open(path)
     except LibraryError:
         recipe = next(recipe for recipe in LIBRARIES if recipe.name == name)
-        subprocess.run(list(map(str, recipe.command(path))), check=True)
+        words = [sys.executable, "-m", "stridewire", *map(str, recipe.command(path))]
+        subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
         return Library.open(path)
 
 
