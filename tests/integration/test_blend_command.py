@@ -80,6 +80,7 @@ def test_mistakes_are_named(
 
 def test_absent_data_is_named(tmp_path: Path) -> None:
     """Evaluating and training without split.csv say what the folder should hold."""
+    pytest.importorskip("torch")
     for command in (("evaluate", "blend"), ("train", "blend", "--out", tmp_path / "run")):
         done = run(*command, "--data", tmp_path)
         assert done.exit_code != 0
