@@ -4,7 +4,6 @@ import io
 import json
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,13 +13,13 @@ import torch
 from stridewire.motion.array_types import Floats
 from stridewire_engine.networks.blend import features
 from stridewire_engine.networks.blend.network import facts
-from stridewire_engine.networks.blend.pairs import Frames, Pairs
-from stridewire_models.blend.losses import flatten
+from stridewire_engine.networks.blend.pairs import Frames
 from stridewire_models.blend.networks import SHAPES, Correction, Paper, new_network
 from stridewire_models.blend.training import BEST, CONFIGURATION
 
 _OPSET = 17
-_REACH = 1.5
+FURTHEST = 2.0
+"""Distance from the training data beyond which the network is not used: it gained nothing there."""
 _PAIRS = 20_000
 
 
@@ -47,32 +46,19 @@ def read_run(folder: Path) -> tuple[Correction | Paper, Mapping[str, object]]:
     return network, told
 
 
-@dataclass(frozen=True)
-class Statistics:
-    """What is known of the training data, and told with the network."""
-
-    furthest: float
-    """Distance from it beyond which the network is not to be used."""
-    deviation: Floats
-    """`(135,)` standard deviations of postures as the paper writes them."""
-
-    @staticmethod
-    def of(network: Correction | Paper, train: Frames) -> "Statistics":
-        """Take them: the network reaches half as far again as the farthest training pair."""
-        pairs = flatten(train.draw(np.random.default_rng(1), _PAIRS, 1))
-        with torch.no_grad():
-            _, distance = network(torch.from_numpy(_inputs(network, pairs)))
-        deviation = features.write_postures(pairs.truth[:, 0]).std(axis=0)
-        return Statistics(_REACH * float(distance.max()), deviation)
+def posture_deviation(train: Frames) -> Floats:
+    """Return standard deviations `(135,)` of training postures, as the paper writes them."""
+    pairs = train.draw(np.random.default_rng(1), _PAIRS, 1)
+    return np.asarray(features.write_postures(pairs.truth[:, 0]).std(axis=0))
 
 
-def to_onnx(network: Correction | Paper, seed: int, statistics: Statistics) -> bytes:
+def to_onnx(network: Correction | Paper, seed: int, deviation: Floats) -> bytes:
     """Return the ONNX file of a network.
 
     Args:
         network: Trained.
         seed: That it was trained with.
-        statistics: Of the data that it was trained on.
+        deviation: `(135,)` of the postures that it was trained on.
     """
     variant = "paper" if isinstance(network, Paper) else "correction"
     shape = SHAPES[variant]
@@ -93,8 +79,8 @@ def to_onnx(network: Correction | Paper, seed: int, statistics: Statistics) -> b
     model = onnx.load_from_string(file.getvalue())
     more = {
         "seed": str(seed),
-        "furthest": f"{statistics.furthest:.4f}",
-        "deviation": _list(statistics.deviation),
+        "furthest": str(FURTHEST),
+        "deviation": _list(deviation),
     }
     if isinstance(network, Correction):
         more["bounds"] = _list(network.bounds.numpy())
@@ -105,9 +91,3 @@ def to_onnx(network: Correction | Paper, seed: int, statistics: Statistics) -> b
 
 def _list(values: Floats) -> str:
     return json.dumps([round(float(value), 5) for value in values])
-
-
-def _inputs(network: Correction | Paper, pairs: Pairs) -> Floats:
-    if isinstance(network, Paper):
-        return features.paper_inputs(pairs.start, pairs.end, pairs.weights[:, 0])
-    return features.inputs(pairs.start, pairs.end, pairs.duration)

@@ -64,17 +64,8 @@ class Blend(nn.Module):
     offset: Tensor
     scale: Tensor
 
-    def __init__(self, inputs: int, outputs: int, *, dropout: float, noise: float) -> None:
-        """Make a network.
-
-        Args:
-            inputs: Numbers that it reads.
-            outputs: Numbers that it gives.
-            dropout: Share of hidden units left out in training.
-            noise: Deviation of what is added to standardised inputs in training.
-        """
+    def __init__(self, inputs: int, outputs: int) -> None:
         super().__init__()
-        self._noise = noise
         self.register_buffer("mean", torch.zeros(inputs))
         self.register_buffer("deviation", torch.ones(inputs))
         self.register_buffer("offset", torch.zeros(outputs))
@@ -85,7 +76,7 @@ class Blend(nn.Module):
             layer = nn.Linear(a, b)
             nn.init.kaiming_normal_(layer.weight, nonlinearity="linear")
             nn.init.zeros_(layer.bias)
-            hidden += [layer, nn.SELU(), nn.AlphaDropout(dropout)]
+            hidden += [layer, nn.SELU()]
         self.hidden = nn.Sequential(*hidden)
         self.last = nn.Linear(WIDTH, outputs)
         self.novelty = Novelty(inputs)
@@ -100,8 +91,6 @@ class Blend(nn.Module):
     def forward(self, x: Tensor) -> tuple[Tensor, Tensor]:
         """Return outputs `(N, O)` and distances `(N,)` of inputs `(N, D)`."""
         z = (x - self.mean) / self.deviation
-        if self.training and self._noise:
-            z = z + self._noise * torch.randn_like(z)
         return self.offset + self.scale * self.last(self.hidden(z)), self.novelty(z)
 
 
@@ -111,7 +100,7 @@ class Correction(Blend):
     bounds: Tensor
 
     def __init__(self) -> None:
-        super().__init__(INPUTS, ORDER * CHANNELS, dropout=0.1, noise=0.1)
+        super().__init__(INPUTS, ORDER * CHANNELS)
         self.register_buffer("bounds", torch.ones(CHANNELS))
         # begin as the linear blend
         nn.init.zeros_(self.last.weight)
@@ -132,7 +121,7 @@ class Paper(Blend):
     """The paper's network: the posture itself, as 135 numbers."""
 
     def __init__(self) -> None:
-        super().__init__(PAPER_INPUTS, POSTURE_SIZE, dropout=0.0, noise=0.0)
+        super().__init__(PAPER_INPUTS, POSTURE_SIZE)
 
     def aim(self, examples: Floats) -> None:
         """Take statistics of outputs `(N, 135)` of the training data."""

@@ -28,6 +28,8 @@ class Recipe:
     weight_decay: float
     averaging: float
     """Decay of the running mean of the weights that is judged and kept; 0 for the weights as is."""
+    vary_rigs: bool
+    """Whether pairs are also shown as other rigs would hold them."""
 
     @property
     def steps(self) -> int:
@@ -36,13 +38,14 @@ class Recipe:
 
 
 RECIPES = {
-    "correction": Recipe("correction", (Phase(6_000, 256, 4, 1e-3, 0.1, 1_000),), 1e-2, 0.999),
+    "correction": Recipe("correction", (Phase(10_000, 256, 4, 1e-3, 0.1, 8),), 1e-2, 0.999, True),
     # two phases, the second to fine-tune (Gaisbauer et al. 2019, section 3.4)
     "paper": Recipe(
         "paper",
         (Phase(60_000, 32, 1, 1e-3, 0.0, 30), Phase(50, 30_000, 1, 1e-3, 0.0, 10)),
         0.0,
         0.0,
+        False,
     ),
 }
 """Each within 15 minutes of one thread."""

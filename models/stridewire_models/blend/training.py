@@ -17,9 +17,10 @@ from stridewire_engine.networks.blend import features
 from stridewire_engine.networks.blend.correction import linear
 from stridewire_engine.networks.blend.features import JOINTS
 from stridewire_engine.networks.blend.pairs import Frames, Pairs
-from stridewire_models.blend.losses import correction_loss, flatten, paper_loss
+from stridewire_models.blend.losses import correction_loss, paper_loss
 from stridewire_models.blend.networks import Correction, Paper, new_network
 from stridewire_models.blend.recipes import Phase, Recipe
+from stridewire_models.blend.rig_variation import vary_rigs
 
 CHECKPOINT, BEST, CURVE, CONFIGURATION = "checkpoint.pt", "best.pt", "curve.json", "run.json"
 _SAVE_EVERY_S = 300.0
@@ -105,7 +106,7 @@ class Run:
 
     def _step(self) -> None:
         phase = self.recipe.phases[self.progress.phase]
-        pairs = self._train.draw(self._rng, phase.batch, phase.between)
+        pairs = self._draw(self._rng, phase.batch, phase.between)
         loss = self._loss(self.network, pairs)
         self._optimiser.zero_grad(set_to_none=True)
         loss.backward()  # type: ignore[no-untyped-call]
@@ -117,6 +118,10 @@ class Run:
         self.progress.step += 1
         self.progress.step_in_phase += 1
 
+    def _draw(self, rng: np.random.Generator, count: int, between: int) -> Pairs:
+        pairs = self._train.draw(rng, count, between)
+        return vary_rigs(pairs, rng) if self.recipe.vary_rigs else pairs
+
     def _loss(self, network: Correction | Paper, pairs: Pairs) -> Tensor:
         if isinstance(network, Paper):
             return paper_loss(network, pairs)
@@ -126,7 +131,7 @@ class Run:
     @torch.no_grad()
     def _look(self) -> None:
         """Judge on the validation data; keep the weights where they are the best so far."""
-        network = self.judged.eval()
+        network = self.judged
         if isinstance(network, Paper):
             loss = float(paper_loss(network, self._validation))
         else:
@@ -136,7 +141,6 @@ class Run:
         if loss < self.progress.best:
             self.progress.best, self.progress.since_best = loss, 0
             torch.save(network.state_dict(), self.folder / BEST)
-        self.network.train()
         now = {"step": self.progress.step, "validation": loss, "cpu_s": self.progress.cpu_s}
         self.progress.curve.append(now)
         (self.folder / CURVE).write_text(json.dumps(self.progress.curve) + "\n")
@@ -165,7 +169,6 @@ class Run:
             "optimiser": self._optimiser.state_dict(),
             "schedule": self._schedule.state_dict(),
             "rng": self._rng.bit_generator.state,
-            "torch_rng": torch.get_rng_state(),
         }
         fresh = self.folder / f"{CHECKPOINT}.new"
         torch.save(state, fresh)
@@ -177,7 +180,6 @@ class Run:
         self.network.load_state_dict(state["network"])
         self.average.load_state_dict(state["average"])
         self._rng.bit_generator.state = state["rng"]
-        torch.set_rng_state(state["torch_rng"])
         if self.progress.phase < len(self.recipe.phases):
             self._begin_phase()
             self._optimiser.load_state_dict(state["optimiser"])
@@ -185,7 +187,7 @@ class Run:
 
     def _fit(self) -> None:
         """Take statistics of the training data into the network."""
-        pairs = flatten(self._train.draw(np.random.default_rng(0), _EXAMPLES, 1))
+        pairs = self._draw(np.random.default_rng(0), _EXAMPLES, 1)
         if isinstance(self.network, Paper):
             x = features.paper_inputs(pairs.start, pairs.end, pairs.weights[:, 0])
             self.network.aim(features.write_postures(pairs.truth[:, 0]))

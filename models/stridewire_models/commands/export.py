@@ -23,7 +23,7 @@ def export() -> None:
     envvar="STRIDEWIRE_DATA",
     required=True,
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Folder of the training; says which pairs are too far out. STRIDEWIRE_DATA by default.",
+    help="Folder of the training; figures are in its deviations. STRIDEWIRE_DATA by default.",
 )
 @click.option(
     "--out",
@@ -34,7 +34,7 @@ def export() -> None:
 def blend(run: Path, data: Path, out: Path | None, as_json: bool) -> None:
     """Export the best weights of a run of `stridewire train blend` as ONNX (needs torch, onnx)."""
     try:
-        from stridewire_models.blend.export import Statistics, read_run, to_onnx
+        from stridewire_models.blend.export import FURTHEST, posture_deviation, read_run, to_onnx
     except ModuleNotFoundError as error:
         raise click.ClickException(
             f"exporting needs {error.name}: pip install 'stridewire[server,train]'"
@@ -45,8 +45,7 @@ def blend(run: Path, data: Path, out: Path | None, as_json: bool) -> None:
         import_clips(files), length=len(files), label="importing train", hidden=as_json
     ) as clips:
         train = Frames.of((clip for clip in clips if clip is not None), mirror=True)
-    statistics = Statistics.of(network, train)
-    content = to_onnx(network, int(str(told["seed"])), statistics)
+    content = to_onnx(network, int(str(told["seed"])), posture_deviation(train))
     path = out or run / "blend.onnx"
     path.write_bytes(content)
     digest = hashlib.sha256(content).hexdigest()
@@ -56,7 +55,7 @@ def blend(run: Path, data: Path, out: Path | None, as_json: bool) -> None:
         "variant": told["variant"],
         "bytes": len(content),
         "sha256": digest,
-        "furthest": round(statistics.furthest, 3),
+        "furthest": FURTHEST,
     }
     click.echo(
         json.dumps(facts)

@@ -10,13 +10,19 @@ import click
 import numpy as np
 
 from stridewire import __version__
-from stridewire_engine.evaluation.blend_methods import BATCHES, as_served, by_network, microseconds
+from stridewire_engine.evaluation.blend_methods import (
+    BATCHES,
+    as_served,
+    by_network,
+    microseconds,
+    share_by_network,
+)
 from stridewire_engine.evaluation.blend_table import rows
 from stridewire_engine.evaluation.blending import DURATIONS, LINEAR, Method, blend_linearly, measure
 from stridewire_engine.evaluation.split_clips import import_clips, split_files
 from stridewire_engine.networks.blend import blend_network
 from stridewire_engine.networks.blend.network import load_network
-from stridewire_engine.networks.blend.pairs import Frames
+from stridewire_engine.networks.blend.pairs import Frames, Pairs
 
 _COLUMNS = (
     ("mse", "mse"), ("position cm", "position_error_cm"), ("ends gain cm", "end_effector_gain_cm"),
@@ -77,6 +83,7 @@ def blend(
         "clips": len(frames.lengths),
         "frames": int(frames.lengths.sum()),
         "step_s": step,
+        "by_network_pct": round(100.0 * share_by_network(blend_network(), _drawn(frames)), 1),
         "command": " ".join(sys.argv[1:]),
     }
     if as_json:
@@ -95,10 +102,14 @@ def _other(text: str) -> tuple[str, Method]:
     return label, by_network(load_network(Path(path)))
 
 
+def _drawn(frames: Frames) -> Pairs:
+    return frames.draw(np.random.default_rng(0), BATCHES[-1], 1)
+
+
 def _times(
     name: str, split: str, frames: Frames, methods: Mapping[str, Method]
 ) -> list[dict[str, Any]]:
-    pairs = frames.draw(np.random.default_rng(0), BATCHES[-1], 1)
+    pairs = _drawn(frames)
     out = []
     for label, method in {LINEAR: blend_linearly, **methods}.items():
         taken = microseconds(method, pairs)
@@ -108,13 +119,13 @@ def _times(
 
 
 def _print(table: list[dict[str, Any]]) -> None:
-    head = f"{'method':<27}{'weight':>7}{'s':>5}"
-    click.echo(head + "".join(f"{title:>22}" for title, _ in _COLUMNS) + f"{'linear':>8}")
+    head = f"{'method':<27}{'weight':>7}{'s':>5}  "
+    click.echo(head + "".join(f"{title:<24}" for title, _ in _COLUMNS) + f"{'linear':>8}")
     for row in table:
         if "mse" in row:
-            cells = "".join(f"{_cell(row, key):>22}" for _, key in _COLUMNS)
+            cells = "".join(f"{_cell(row, key):<24}" for _, key in _COLUMNS)
             duration = row["duration_s"] or "all"
-            start = f"{row['method']:<27}{row['weight']:>7}{duration:>5}"
+            start = f"{row['method']:<27}{row['weight']:>7}{duration:>5}  "
             click.echo(f"{start}{cells}{row['linear_collisions']:>8}")
     for row in table:
         if row.get("figure"):

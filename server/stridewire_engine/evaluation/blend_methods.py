@@ -8,6 +8,7 @@ from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.blending.feet import keep_feet
 from stridewire_engine.evaluation.blending import Method
 from stridewire_engine.networks.blend import BlendNetwork, Postures
+from stridewire_engine.networks.blend.correction import linear
 from stridewire_engine.networks.blend.network import PaperNetwork, joint_weights
 from stridewire_engine.networks.blend.pairs import Pairs
 
@@ -32,20 +33,41 @@ def by_network(network: BlendNetwork | PaperNetwork, tell_duration: bool = True)
 
 
 def as_served(network: BlendNetwork, tell_duration: bool = True) -> Method:
-    """Return blends as the service makes them: the network, then the feet."""
-    bare = by_network(network, tell_duration)
+    """Return blends as the service makes them: the network where it is sure, then the feet.
+
+    Args:
+        network: To blend by.
+        tell_duration: Whether it is told how long a pair takes.
+    """
 
     def blend(pairs: Pairs) -> Postures:
-        between = bare(pairs)
-        shape = pairs.weights.shape
-        of = np.arange(shape[0]).repeat(shape[1])
-        joints = len(REFERENCE)
-        flat = Postures(between.hips.reshape(-1, 3), between.rotations.reshape(-1, joints, 4))
-        weights = joint_weights(pairs.weights.reshape(-1))
-        kept = keep_feet(flat, pairs.start[of], pairs.end[of], weights)
-        return Postures(kept.hips.reshape(*shape, 3), kept.rotations.reshape(*shape, joints, 4))
+        duration = pairs.duration if tell_duration else np.zeros_like(pairs.duration)
+        weights = joint_weights(pairs.weights)
+        between, distance = network.between(pairs.start, pairs.end, weights, duration)
+        kept = _with_feet(between, pairs)
+        straight = linear(pairs.start[:, None], pairs.end[:, None], weights)
+        sure = (distance <= network.furthest)[:, None]
+        return Postures(
+            np.where(sure[..., None], kept.hips, straight.hips),
+            np.where(sure[..., None, None], kept.rotations, straight.rotations),
+        )
 
     return blend
+
+
+def share_by_network(network: BlendNetwork, pairs: Pairs) -> float:
+    """Return the share of pairs that are near enough to the training data for the network."""
+    _, distance = network.coefficients(pairs.start, pairs.end, pairs.duration)
+    return float(np.mean(distance <= network.furthest))
+
+
+def _with_feet(between: Postures, pairs: Pairs) -> Postures:
+    shape, joints = pairs.weights.shape, len(REFERENCE)
+    of = np.arange(shape[0]).repeat(shape[1])
+    flat = Postures(between.hips.reshape(-1, 3), between.rotations.reshape(-1, joints, 4))
+    weights = joint_weights(pairs.weights.reshape(-1))
+    kept = keep_feet(flat, pairs.start[of], pairs.end[of], weights)
+    return Postures(kept.hips.reshape(*shape, 3), kept.rotations.reshape(*shape, joints, 4))
 
 
 def microseconds(method: Method, pairs: Pairs) -> dict[int, float]:

@@ -24,7 +24,7 @@ import torch
 
 from stridewire_models.blend import rotations
 from stridewire_models.blend.capsules import penetration
-from stridewire_models.blend.export import RunError, Statistics, read_run, to_onnx
+from stridewire_models.blend.export import RunError, posture_deviation, read_run, to_onnx
 from stridewire_models.blend.networks import VARIANTS, new_network
 from stridewire_models.blend.recipes import RECIPES, Recipe
 from stridewire_models.blend.training import CHECKPOINT, Run
@@ -48,7 +48,7 @@ def frames() -> Frames:
 def recipe(variant: str, steps: int, batch: int = 32) -> Recipe:
     """Return a short recipe of one phase; few steps move a mean of weights too little."""
     (phase, *_) = RECIPES[variant].phases
-    phases = (replace(phase, steps=steps, batch=batch),)
+    phases = (replace(phase, steps=steps, batch=batch, patience=steps),)
     return replace(RECIPES[variant], phases=phases, averaging=0.0)
 
 
@@ -126,7 +126,7 @@ def test_onnx_agrees_with_torch(
 ) -> None:
     """The exported network gives the numbers of the trained one at any batch size."""
     network, told = read_run(run.folder)
-    model = OnnxModel("blend.onnx", to_onnx(network, 0, Statistics.of(network, frames)))
+    model = OnnxModel("blend.onnx", to_onnx(network, 0, posture_deviation(frames)))
     assert told["variant"] == model.facts["variant"]
     (PaperNetwork if told["variant"] == "paper" else BlendNetwork)(model)
     rows = network.mean + network.deviation * torch.from_numpy(
