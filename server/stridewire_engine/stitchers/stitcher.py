@@ -6,6 +6,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
+from stridewire_engine.stitchers.columns import allocate, column
 from stridewire_engine.stitchers.legs import Legs
 
 
@@ -115,56 +116,61 @@ class StitchState:
     it, so that any stitcher can take over from any other.
     """
 
-    offset_hips: Vectors
+    offset_hips: Vectors = column(3)
     """`(N, 3)` offset of the hips, metres."""
-    offset_hips_velocity: Vectors
+    offset_hips_velocity: Vectors = column(3)
     """`(N, 3)` its rate of change."""
-    offset_rotations: Vectors
+    offset_rotations: Vectors = column("J", 3)
     """`(N, J, 3)` offsets as scaled axes, turned after the sampled rotation, radians."""
-    offset_angular_velocity: Vectors
+    offset_angular_velocity: Vectors = column("J", 3)
     """`(N, J, 3)` rate of change of the scaled axes, rad/s."""
-    stitch_time: Floats
+    stitch_time: Floats = column()
     """`(N,)` seconds since the last transition."""
-    stitch_deficit: Floats
+    stitch_deficit: Floats = column()
     """`(N,)` seconds that interruptions have cost."""
-    curve_value: Floats
+    curve_value: Floats = column("1 + J")
     """`(N, 1 + J)` offsets of hips and joints along their axes, at the transition."""
-    curve_speed: Floats
+    curve_speed: Floats = column("1 + J")
     """`(N, 1 + J)` their rate of change then."""
-    curve_end: Floats
+    curve_end: Floats = column("1 + J")
     """`(N, 1 + J)` seconds after which nothing is left of them."""
-    curve_axis: Vectors
+    curve_axis: Vectors = column("1 + J", 3)
     """`(N, 1 + J, 3)` unit."""
-    dead_hips: Vectors
+    dead_hips: Vectors = column(3)
     """`(N, 3)` as shown at the transition."""
-    dead_rotations: Quaternions
+    dead_rotations: Quaternions = column("J", 4)
     """`(N, J, 4)` as shown at the transition."""
-    dead_velocity: Vectors
+    dead_velocity: Vectors = column("1 + J", 3)
     """`(N, 1 + J, 3)` of hips and joints then, m/s and rad/s."""
-    dead_halflife: Vectors
+    dead_halflife: Vectors = column("1 + J", 3)
     """`(N, 1 + J, 3)` seconds, of each axis of the velocity."""
-    body_halflife: Floats
+    body_halflife: Floats = column("1 + J")
     """`(N, 1 + J)` seconds, of the springs of hips and joints."""
-    toe_shown: Vectors
+    toe_shown: Vectors = column(2, 3, dtype=np.float64)
     """`(N, 2, 3)` world position of the toes in the last frame, float64, whoever planted them."""
-    toe_speed: Vectors
+    toe_speed: Vectors = column(2, 3)
     """`(N, 2, 3)` their world velocity, m/s."""
-    toe_gap: Vectors
+    toe_gap: Vectors = column(2, 3)
     """`(N, 2, 3)` from the clip's toes to the shown ones, in the world."""
-    toe_gap_speed: Vectors
+    toe_gap_speed: Vectors = column(2, 3)
     """`(N, 2, 3)` its rate of change."""
-    toe_swing: Floats
+    toe_swing: Floats = column(2)
     """`(N, 2)` how far a swing has got under way, 0 to 1."""
-    toe_lift: Floats
+    toe_lift: Floats = column(2)
     """`(N, 2)` height added to toes that swing."""
-    toe_lift_speed: Floats
+    toe_lift_speed: Floats = column(2)
     """`(N, 2)`."""
-    hip_drop: Floats
+    hip_drop: Floats = column()
     """`(N,)` metres that the hips are lowered by."""
-    hip_drop_speed: Floats
+    hip_drop_speed: Floats = column()
     """`(N,)`."""
-    legs_shown: Quaternions
+    legs_shown: Quaternions = column(6, 4)
     """`(N, 6, 4)` rotations of both thighs, shins and feet, where the stitcher bent them."""
+
+    @classmethod
+    def fresh(cls, rows: int, joints: int) -> "StitchState":
+        """Return the state of characters of whom nothing was shown."""
+        return cls(**allocate(cls, rows, {"J": joints, "1 + J": 1 + joints}))
 
     def take(self, rows: slice | Indices) -> "StitchState":
         """Return the rows: a view for a slice, a copy for indices."""
