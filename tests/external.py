@@ -11,6 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 NODE_EXAMPLE = ROOT / "examples" / "node"
+NODE_TESTS = ROOT / "tests" / "node"
 
 
 def binary(name: str) -> str | None:
@@ -25,6 +26,11 @@ needs_buf = pytest.mark.skipif(binary("buf") is None, reason="needs buf: pip ins
 needs_node = pytest.mark.skipif(
     binary("node") is None or not (NODE_EXAMPLE / "node_modules").is_dir(),
     reason="needs node and `npm ci --ignore-scripts --prefix examples/node`",
+)
+
+needs_gltf_validator = pytest.mark.skipif(
+    binary("node") is None or not (NODE_TESTS / "node_modules" / "gltf-validator").is_dir(),
+    reason="needs node and `npm ci --ignore-scripts --prefix tests/node`",
 )
 
 
@@ -45,6 +51,13 @@ def node_example(address: str, seconds: float) -> dict[str, Any]:
     command = [str(binary("node")), str(NODE_EXAMPLE / "stream.mjs"), address, str(seconds)]
     found: dict[str, Any] = json.loads(_run(command, None))
     return found
+
+
+def validate_gltf(path: Path) -> dict[str, Any]:
+    """Return the Khronos validator's report on a glTF file."""
+    command = [str(binary("node")), str(NODE_TESTS / "validate_gltf.mjs"), str(path)]
+    report: dict[str, Any] = json.loads(_run(command, None))
+    return report
 
 
 def objects(text: str) -> list[Any]:

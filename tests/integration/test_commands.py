@@ -17,6 +17,7 @@ from serving import DEADLINE_S
 from stridewire import Client, Pacing, UnavailableError
 from stridewire.commands import main
 from stridewire.formats.bvh import read_bvh
+from stridewire.formats.gltf import read_gltf
 from stridewire.v1 import animation_pb2 as pb
 from stridewire_engine.library import Library
 
@@ -106,6 +107,18 @@ def test_stream_writes_motion_and_figures(
         for file in told["files"]:
             assert len(read_bvh(file).rotations) == 120
             Path(file).unlink()
+
+
+def test_stream_writes_glb(small_library: Library, tmp_path: Path) -> None:
+    """By the ending of --out; one that nothing writes is refused before anybody walks."""
+    target = ("--library", small_library.path, "--seconds", 0.5)
+    result = run("stream", "--out", tmp_path / "walk.glb", *target)
+    assert result.exit_code == 0, result.output
+    assert len(read_gltf(tmp_path / "walk.glb")) == 30
+    refused = run("stream", "--out", tmp_path / "walk.fbx", *target)
+    assert refused.exit_code == 2
+    assert "expected .bvh, .glb, .npz" in refused.output
+    assert "latency" not in refused.output
 
 
 def test_stream_in_words(address: str) -> None:

@@ -37,7 +37,16 @@ ENGINE_FLOORS = {
 }
 
 THIRD_PARTY = {
-    "stridewire": {"click", "google", "grpc", "matplotlib", "mpl_toolkits", "numpy"},
+    "stridewire": {
+        "PIL",
+        "click",
+        "google",
+        "grpc",
+        "matplotlib",
+        "mpl_toolkits",
+        "numpy",
+        "pygltflib",
+    },
     "stridewire_engine": {
         "click",
         "faiss",

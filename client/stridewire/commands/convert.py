@@ -6,15 +6,13 @@ from pathlib import Path
 import click
 
 from stridewire._errors import StridewireError
-from stridewire.formats.bvh_writing import write_source_bvh
 from stridewire.formats.conversion import scaled, turned_up, with_rate
-from stridewire.formats.npz import write_npz
 from stridewire.formats.reading import read_motion
 from stridewire.formats.retargeting import find_retargeting
 from stridewire.formats.source_motion import SourceMotion
-from stridewire.formats.units import UNITS, parse_unit
+from stridewire.formats.units import UNITS, likely_unit, parse_unit, unit_name
+from stridewire.formats.writing import find_writer
 
-_WRITERS = {".bvh": write_source_bvh, ".npz": write_npz}
 _ACCLAIM_RATE = 120.0
 
 
@@ -44,14 +42,20 @@ def convert(
     up: str | None,
     skeleton: str | None,
 ) -> None:
-    """Convert a motion file (BVH, AMC with its ASF, npz) to BVH or npz.
+    """Convert a motion file (BVH, AMC with its ASF, npz, glTF) to BVH, npz or GLB.
 
     On its own skeleton whatever it is, or brought onto the reference skeleton as `stridewire
-    library build` does it: Y up, on the ground, in centimetres unless --to-unit says another.
+    library build` does it: Y up, on the ground, in centimetres unless --to-unit says another. A
+    GLB is in metres, Y up, with a simple body for its skeleton.
     """
-    writer = _WRITERS.get(out.suffix.lower())
-    if writer is None:
-        raise click.UsageError(f"cannot write {out.name}; expected {' or '.join(_WRITERS)}")
+    try:
+        writer = find_writer(out)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from None
+    if is_gltf := out.suffix.lower() == ".glb":
+        if to_unit is not None or up == "Z":
+            raise click.UsageError("a GLB is in metres, Y up: leave out --to-unit and --up Z")
+        up = "Y"
     try:
         source = _with_true_rate(read_motion(motion), true_rate)
         given = parse_unit(from_unit) if from_unit else None
@@ -60,6 +64,8 @@ def convert(
             source = find_retargeting(skeleton)(turned_up(source, from_up, "Y"), given)
             from_up = "Y"
         source = turned_up(source, from_up, up or from_up)
+        if is_gltf and source.metres_per_unit is None:
+            source = _with_likely_unit(source)
         if to_unit is not None:
             source = scaled(source, _metres(source) / parse_unit(to_unit))
         if rate is not None:
@@ -80,6 +86,13 @@ def _with_true_rate(source: SourceMotion, true_rate: float | None) -> SourceMoti
         click.echo(f"note: {source.path} says no frame rate; {_ACCLAIM_RATE:g} assumed", err=True)
         true_rate = _ACCLAIM_RATE
     return source if true_rate is None else replace(source, frame_rate=true_rate)
+
+
+def _with_likely_unit(source: SourceMotion) -> SourceMotion:
+    metres = likely_unit(source.skeleton)
+    name = unit_name(metres)
+    click.echo(f"note: {source.path} says no unit; {name} by its size (--unit is yours)", err=True)
+    return replace(source, metres_per_unit=metres)
 
 
 def _metres(source: SourceMotion) -> float:

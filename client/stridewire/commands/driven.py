@@ -11,7 +11,7 @@ from stridewire._messages import CharacterSpec, GroundPose, Opened
 from stridewire._session import Session
 from stridewire._version import __version__
 from stridewire.driving import Control, Run, drive
-from stridewire.formats.bvh_writing import write_bvh
+from stridewire.formats.writing import write_clip
 
 _SPACING = 2.0
 
@@ -48,11 +48,11 @@ def drive_with_progress(
 
 
 def write_motion(run: Run, out: Path, name: str) -> list[Path]:
-    """Write what each character did as BVH: `walk.bvh`, `walk-2.bvh`, `walk-3.bvh` and so on."""
+    """Write what each character did: `walk.bvh`, `walk-2.bvh`, `walk-3.bvh` and so on."""
     paths = []
     for number, character in enumerate(run.recording.characters, start=1):
         path = out if number == 1 else out.with_stem(f"{out.stem}-{number}")
-        write_bvh(path, run.recording.clip(character, name, run.rate_hz))
+        write_clip(path, run.recording.clip(character, name, run.rate_hz))
         paths.append(path)
     return paths
 

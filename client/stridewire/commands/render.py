@@ -38,7 +38,7 @@ def render(
     rows: int,
     as_json: bool,
 ) -> None:
-    """Draw a motion file (BVH, or AMC beside its ASF) as a contact sheet.
+    """Draw a motion file (BVH, AMC beside its ASF, npz, glTF) as a contact sheet.
 
     Shows figures at even times, the way from above, the feet and the speed over time.
     """

@@ -14,6 +14,7 @@ from stridewire.commands.driven import (
     write_motion,
 )
 from stridewire.commands.targets import connect, target_options
+from stridewire.formats.writing import find_writer
 from stridewire.scripts import SCRIPT_NAMES, script
 
 
@@ -32,7 +33,7 @@ from stridewire.scripts import SCRIPT_NAMES, script
 @click.option(
     "--out",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="BVH file to write, and one more for each further character.",
+    help="BVH, GLB or npz to write, and one more file for each further character.",
 )
 @click.option(
     "--record",
@@ -60,7 +61,9 @@ def stream(
     realtime: bool | None,
     as_json: bool,
 ) -> None:
-    """Drive characters by a script; record, measure, write BVH."""
+    """Drive characters by a script; record, measure, write motion files."""
+    if out:
+        find_writer(out)
     control = partial(script(script_name).controls, characters=characters, seed=seed)
     paced = library is None if realtime is None else realtime
     with (

@@ -1,22 +1,17 @@
 """What is drawn: joints in the world with sides, feet and root, of a clip or a motion file."""
 
-import re
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from stridewire.formats.source_motion import SourceMotion
+from stridewire.formats.units import likely_unit
 from stridewire.motion import kinematics, quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Vectors
 from stridewire.motion.clip import Clip, TagSpan, differences
 from stridewire.motion.root import savitzky_golay
-from stridewire.motion.skeleton import CONTACT_JOINTS, Skeleton
-
-_UNITS = (1.0, 0.1, 0.0564, 0.0254, 0.01, 0.001)
-"""Metres in the units that motion files are in; 0.0564 is that of the CMU database."""
-
-_LEG = 1.0
-"""Length of the longest chain of bones downwards from the hips in people; metres."""
+from stridewire.motion.sides import head_joint, joint_sides
+from stridewire.motion.skeleton import CONTACT_JOINTS
 
 _UPPER_BODY = ("head", "neck", "skull", "chest", "thorax", "torso", "spine")
 """Parts of names of joints above the hips, the highest first."""
@@ -97,7 +92,7 @@ class Subject:
             heading=quaternion.to_yaw(clip.pose.root_rotation),
             feet=clip.skeleton.indices(feet),
             planted=clip.contacts[:, [CONTACT_JOINTS.index(name) for name in feet]],
-            head=_head(clip.skeleton.names),
+            head=head_joint(clip.skeleton.names),
             tags=clip.tags,
         )
 
@@ -116,7 +111,7 @@ class Subject:
         if rate is None:
             raise ValueError(f"{source.path} does not say its frame rate; give it")
         positions, _ = source.global_poses()
-        positions = positions * (source.metres_per_unit or _metres_per_unit(source.skeleton))
+        positions = positions * (source.metres_per_unit or likely_unit(source.skeleton))
         names = source.skeleton.names
         positions = _upright(positions, names)
         sides = joint_sides(names)
@@ -134,35 +129,8 @@ class Subject:
             heading=_heading(positions, source.skeleton.parents, sides, feet, root),
             feet=feet,
             planted=_planted(positions[:, feet], rate),
-            head=_head(names),
+            head=head_joint(names),
         )
-
-
-def joint_sides(names: tuple[str, ...]) -> Indices:
-    """Return `(J,)` 1 for left, -1 for right, 0 for the middle, by names that come in pairs."""
-    folded = [name.lower() for name in names]
-    sides = np.zeros(len(names), np.intp)
-    for left, right in (("left", "right"), ("l", "r")):
-        pattern = re.compile(f"{left}" if len(left) > 1 else rf"^{left}|(?<=[_.:\- ]){left}")
-        for index, name in enumerate(folded):
-            partner = pattern.sub(right, name, count=1)
-            if partner != name and partner in folded and sides[index] == 0:
-                sides[index], sides[folded.index(partner)] = 1, -1
-    return sides
-
-
-def _head(names: tuple[str, ...]) -> int | None:
-    return next((i for i, name in enumerate(names) if "head" in name.lower()), None)
-
-
-def _metres_per_unit(skeleton: Skeleton) -> float:
-    """Return the unit in which the longest chain of bones is nearest to a leg."""
-    bones = np.linalg.norm(skeleton.offsets, axis=-1)
-    chain = np.zeros(len(skeleton))
-    for joint, parent in enumerate(skeleton.parents[1:], start=1):
-        chain[joint] = chain[parent] + bones[joint]
-    distance = np.abs(np.log(np.array(_UNITS) * max(chain.max(), 1e-9) / _LEG))
-    return _UNITS[int(np.argmin(distance))]
 
 
 def _upright(positions: Vectors, names: tuple[str, ...]) -> Vectors:

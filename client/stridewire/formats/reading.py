@@ -5,6 +5,7 @@ from pathlib import Path
 
 from stridewire.formats.acclaim import read_acclaim
 from stridewire.formats.bvh import read_bvh
+from stridewire.formats.gltf import read_gltf
 from stridewire.formats.npz import read_npz
 from stridewire.formats.source_motion import FormatError, SourceMotion
 
@@ -12,6 +13,8 @@ READERS: dict[str, Callable[[Path], SourceMotion]] = {
     ".bvh": read_bvh,
     ".amc": read_acclaim,
     ".npz": read_npz,
+    ".glb": read_gltf,
+    ".gltf": read_gltf,
 }
 """Readers by ending, lower case."""
 

@@ -9,7 +9,7 @@ import click
 import numpy as np
 
 from stridewire._messages import BlendMethod
-from stridewire.formats.bvh_writing import write_bvh
+from stridewire.formats.writing import find_writer, write_clip
 from stridewire.motion.array_types import Floats
 from stridewire.motion.clip import Clip, Pose
 from stridewire.motion.skeleton import REFERENCE, SkeletonError
@@ -40,7 +40,7 @@ _FRAME_RATE = 30.0
     "--out",
     required=True,
     type=click.Path(dir_okay=False, path_type=Path),
-    help="BVH file to write, a frame for each weight.",
+    help="BVH, GLB or npz to write, a frame for each weight.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def blend(
@@ -59,6 +59,7 @@ def blend(
     Both are brought onto the reference skeleton. An end from another file is moved to where the
     start stands.
     """
+    find_writer(out)
     pair = _pair(start, end, duration)
     pair = replace(
         pair,
@@ -68,7 +69,7 @@ def blend(
         ground=ground,
     )
     (blended,) = blend_pairs([pair], blend_network())
-    write_bvh(out, _clip(out.stem, blended))
+    write_clip(out, _clip(out.stem, blended))
     facts = {
         "out": str(out),
         "frames": len(pair.weights),

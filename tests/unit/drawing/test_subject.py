@@ -9,10 +9,10 @@ import pytest
 
 from stridewire.drawing import Subject
 from stridewire.drawing.camera import Camera
-from stridewire.drawing.subject import joint_sides
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion import kinematics, quaternion
 from stridewire.motion.clip import Clip
+from stridewire.motion.sides import joint_sides
 from stridewire.motion.skeleton import REFERENCE, Skeleton
 
 

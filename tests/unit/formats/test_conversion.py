@@ -1,5 +1,6 @@
 """Converting: rate, units and up axis change what they should and nothing else."""
 
+import sys
 from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
 
@@ -115,10 +116,47 @@ def test_the_command_says_what_it_lacks(tmp_path: Path, motion: SourceMotion) ->
     source = str(tmp_path / "a.bvh")
     ending = CliRunner().invoke(convert, [source, str(tmp_path / "b.fbx")])
     assert ending.exit_code == 2
-    assert "expected .bvh or .npz" in ending.output
+    assert "expected .bvh, .glb, .npz" in ending.output
     unit = CliRunner().invoke(convert, [source, str(tmp_path / "b.bvh"), "--to-unit", "m"])
     assert unit.exit_code == 2
     assert "--unit" in unit.output
+
+
+def test_the_command_knows_gltf_both_ways(tmp_path: Path, motion: SourceMotion) -> None:
+    """BVH to GLB in metres, Y up, its unit found by size; and back to BVH, joints in place."""
+    write_source_bvh(tmp_path / "a.bvh", turned_up(motion, "Y", "Z"))
+    there = [str(tmp_path / "a.bvh"), str(tmp_path / "a.glb"), "--from-up", "Z"]
+    result = CliRunner().invoke(convert, there)
+    assert result.exit_code == 0, result.output
+    assert "cm by its size" in result.output
+    back = [str(tmp_path / "a.glb"), str(tmp_path / "b.bvh"), "--to-unit", "cm"]
+    result = CliRunner().invoke(convert, back)
+    assert result.exit_code == 0, result.output
+    again = read_bvh(tmp_path / "b.bvh")
+    np.testing.assert_allclose(positions(again), positions(motion), atol=1e-3)
+
+
+@pytest.mark.parametrize("option", [["--up", "Z"], ["--to-unit", "cm"]])
+def test_a_glb_has_its_own_unit_and_axis(
+    tmp_path: Path, motion: SourceMotion, option: list[str]
+) -> None:
+    """Another unit or axis is a usage error, not silently left out."""
+    write_source_bvh(tmp_path / "a.bvh", motion)
+    args = [str(tmp_path / "a.bvh"), str(tmp_path / "a.glb"), "--unit", "cm", *option]
+    result = CliRunner().invoke(convert, args)
+    assert result.exit_code == 2
+    assert "in metres, Y up" in result.output
+
+
+def test_without_pygltflib_the_error_says_what_to_install(
+    tmp_path: Path, motion: SourceMotion, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The base install reads and writes BVH alone."""
+    monkeypatch.setitem(sys.modules, "pygltflib", None)
+    write_source_bvh(tmp_path / "a.bvh", motion)
+    result = CliRunner().invoke(convert, [str(tmp_path / "a.bvh"), str(tmp_path / "a.glb")])
+    assert result.exit_code == 1
+    assert "pip install 'stridewire[server]'" in result.output
 
 
 def test_the_command_brings_a_file_onto_the_reference(tmp_path: Path) -> None:
