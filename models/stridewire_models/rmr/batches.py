@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from stridewire.motion import quaternion
-from stridewire.motion.array_types import Floats, Quaternions, Vectors
+from stridewire.motion.array_types import Flags, Floats, Quaternions, Vectors
 from stridewire_engine.networks.rmr import features
 from stridewire_engine.networks.rmr.assembly import Assembled
 from stridewire_engine.networks.rmr.features import PlanFrame
@@ -56,7 +56,7 @@ class Batch:
         return Batch(*(getattr(self, field.name)[index] for field in fields(self)))
 
 
-def batch_of(made: Assembled, begins: Floats, true_labels: Floats, pull: Floats) -> Batch:
+def batch_of(made: Assembled, begins: Flags, true_labels: Flags, pull: Floats) -> Batch:
     """Return tensors of assembled pairs."""
     plans = made.plans
     frame = PlanFrame.of(plans)
@@ -82,7 +82,7 @@ def batch_of(made: Assembled, begins: Floats, true_labels: Floats, pull: Floats)
     )
 
 
-def _sprung_height(shown: Floats, clip: Floats, before: Floats, begins: Floats) -> Floats:
+def _sprung_height(shown: Floats, clip: Floats, before: Floats, begins: Flags) -> Floats:
     """Return heights of toes `(N, T, 2)` whose offsets at seams decay."""
     out = np.where(np.cumsum(begins, axis=1)[..., None] > 0, clip, shown)
     for at in np.unique(np.nonzero(begins)[1]):
@@ -101,5 +101,5 @@ def _entered(turns: Quaternions, frame: PlanFrame) -> Vectors:
     return quaternion.multiply(np.broadcast_to(back, turns.shape), turns)
 
 
-def _tensor(values: Floats) -> Tensor:
+def _tensor(values: Floats | Flags) -> Tensor:
     return torch.from_numpy(values.astype(np.float32))

@@ -48,8 +48,8 @@ def follow(
         gap = x - before[:, t]
         rate = v - torch.where(fresh, speed[:, t], speed[:, t - 1])
         share = planted[:, t, :, None]
-        swing = swing + (1.0 - planted[:, t].detach() - swing) * onset
         swing = torch.where(fresh[..., 0], torch.zeros_like(swing), swing)
+        swing = swing + (1.0 - planted[:, t].detach() - swing) * onset
         far = torch.linalg.vector_norm(gap.detach(), dim=-1, keepdim=True)
         half = torch.maximum(quick[:, t], 2.0 * _LN2 * torch.sqrt(far / _STRONGEST))
         half = half / torch.clamp(swing, min=0.1)[..., None]

@@ -31,12 +31,11 @@ class Steps(nn.Module):
             nn.Linear(TOKEN * INPUTS, WIDTH), nn.ReLU(), nn.Linear(WIDTH, WIDTH), nn.ReLU()
         )
         self.recurrent = nn.GRU(WIDTH, WIDTH, batch_first=True, bidirectional=True)
-        self.decoder = nn.Sequential(
-            nn.Linear(2 * WIDTH, WIDTH), nn.ReLU(), nn.Linear(WIDTH, CURVES + PLANTED)
-        )
+        last = nn.Linear(WIDTH, CURVES + PLANTED)
+        self.decoder = nn.Sequential(nn.Linear(2 * WIDTH, WIDTH), nn.ReLU(), last)
         # begin as the plain stitcher with the clips' labels
-        nn.init.zeros_(self.decoder[-1].weight)
-        nn.init.zeros_(self.decoder[-1].bias)
+        nn.init.zeros_(last.weight)
+        nn.init.zeros_(last.bias)
 
     def fit(self, examples: Floats) -> None:
         """Take statistics of inputs `(N, T, D)` of the training data."""

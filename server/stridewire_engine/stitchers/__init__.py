@@ -12,6 +12,7 @@ from stridewire_engine.stitchers.quintic import QuinticInertialization
 from stridewire_engine.stitchers.stance import Stance
 from stridewire_engine.stitchers.stitcher import (
     STITCH_COLUMNS,
+    Guide,
     LegsAhead,
     Motion,
     Roots,
@@ -23,6 +24,7 @@ from stridewire_engine.stitchers.stitcher import (
 __all__ = [
     "STITCHERS",
     "STITCH_COLUMNS",
+    "Guide",
     "LegsAhead",
     "Motion",
     "Roots",

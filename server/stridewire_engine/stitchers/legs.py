@@ -83,6 +83,12 @@ def leg_pose(legs: Legs, hips: Vectors, rotations: Quaternions) -> LegPose:
     return LegPose(hip, knee, ankle, toe, thigh, shin, foot)
 
 
+def turn_feet(legs: Legs, pose: LegPose, turn: Vectors) -> LegPose:
+    """Return the same legs with feet turned about their ankles by rotation vectors `(N, 2, 3)`."""
+    foot = quaternion.multiply(quaternion.from_scaled_axis(turn.astype(np.float32)), pose.foot)
+    return pose._replace(foot=foot, toe=pose.ankle + quaternion.rotate(foot, legs.offsets[3]))
+
+
 def raise_heels(pose: LegPose, toes: Vectors, reach: Floats) -> tuple[LegPose, Vectors]:
     """Roll feet over their toes where legs would be too short, as walkers do.
 

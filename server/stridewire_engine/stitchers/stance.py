@@ -13,7 +13,7 @@ from stridewire.motion.array_types import Flags, Floats, Quaternions, Vectors
 from stridewire.motion.springs import damper_exact, decay_spring_damper_exact, spring_damper_exact
 from stridewire_engine.stitchers import footing, offsets
 from stridewire_engine.stitchers.footing import Toes
-from stridewire_engine.stitchers.legs import Legs, bend, leg_pose, raise_heels
+from stridewire_engine.stitchers.legs import Legs, bend, leg_pose, raise_heels, turn_feet
 from stridewire_engine.stitchers.stitcher import (
     LegsAhead,
     Motion,
@@ -69,9 +69,12 @@ class Stance:
         _decay_body(state, sample.legs, dt)
         hips, rotations = offsets.add(state, sample)
         clip = leg_pose(sample.legs, sample.hips, sample.rotations)
-        target = self._target(state, sample, clip.toe, dt)
+        led = clip.toe if sample.guide is None else clip.toe + sample.guide.toe_offset
+        target = self._target(state, sample, led, dt)
         toes = self._step(state, sample, target, dt)
         body = leg_pose(sample.legs, hips, rotations)
+        if sample.guide is not None:
+            body = turn_feet(sample.legs, body, sample.guide.foot_turn)
         drop = _drop(state, sample, toes, dt)
         body = body.lowered(drop)
         shown = sample.roots.to_root(toes.position).astype(np.float32)
@@ -94,7 +97,8 @@ class Stance:
         return Toes(position, velocity)
 
     def _step(self, state: StitchState, sample: Sample, target: Toes, dt: Floats) -> Toes:
-        planted = sample.contacts.astype(np.float64)
+        guide = sample.guide
+        planted = sample.contacts.astype(np.float64) if guide is None else guide.planted
         speed = np.hypot(target.velocity[..., 0], target.velocity[..., 2])
         halflife = footing.swing_halflife(speed, _SWING_SHORTEST, _SWING_LONGEST)
         state.toe_swing[...] = damper_exact(

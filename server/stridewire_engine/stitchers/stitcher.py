@@ -77,6 +77,24 @@ class LegsAhead(NamedTuple):
         )
 
 
+class Guide(NamedTuple):
+    """How feet are to go instead of as the clips' do, for N characters now; see `networks.rmr`.
+
+    Who gives one also writes its contacts and offsets into the sample and the legs ahead.
+    """
+
+    planted: Floats
+    """`(N, 2)` share from 0, swinging, to 1, planted."""
+    toe_offset: Vectors
+    """`(N, 2, 3)` from the clips' toes to where swings lead, in the root's frame."""
+    foot_turn: Vectors
+    """`(N, 2, 3)` rotation vectors by which feet are turned, in the root's frame."""
+
+    def take(self, rows: slice | Indices) -> "Guide":
+        """Return some characters' guide."""
+        return Guide(*(array[rows] for array in self))
+
+
 class Sample(NamedTuple):
     """What the clips show now, and under which root, for N characters."""
 
@@ -94,6 +112,8 @@ class Sample(NamedTuple):
     """Of the skeleton."""
     ahead: LegsAhead | None
     """For stitchers that look ahead."""
+    guide: Guide | None = None
+    """For stitchers that plant feet."""
 
     def take(self, rows: slice | Indices) -> "Sample":
         """Return some characters' sample."""
@@ -105,6 +125,7 @@ class Sample(NamedTuple):
             self.begins[rows],
             self.legs,
             None if self.ahead is None else self.ahead.take(rows),
+            None if self.guide is None else self.guide.take(rows),
         )
 
 

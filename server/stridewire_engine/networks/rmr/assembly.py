@@ -136,7 +136,7 @@ def _decayed(two: Floats, time: Floats) -> Floats:
     offset = two[:, 1:]
     rate = (two[:, 1:] - two[:, :1]) * FRAME_RATE
     t = time.reshape(-1, *(1,) * (two.ndim - 2))
-    return np.exp(-_RATE * t) * (offset + (rate + offset * _RATE) * t)
+    return np.asarray(np.exp(-_RATE * t) * (offset + (rate + offset * _RATE) * t))
 
 
 def _place(points: Vectors, root: Vectors, yaw: Floats) -> Vectors:

@@ -10,7 +10,7 @@ from functools import cached_property
 import faiss
 import numpy as np
 
-from stridewire.motion.array_types import Floats, Indices, Vectors
+from stridewire.motion.array_types import Flags, Floats, Indices, Vectors
 from stridewire_engine.networks.rmr.features import turned
 from stridewire_engine.networks.rmr.takes import Takes
 
@@ -84,7 +84,7 @@ class Segments:
         ]
         return np.concatenate(parts, axis=1).astype(np.float32)
 
-    def _thinned(self, query: Indices, rows: Indices) -> Indices:
+    def _thinned(self, query: Indices, rows: Indices) -> Flags:
         """Tell which hits `(N, H)` stay: no own moment, not close to a nearer hit."""
         takes = self._takes
         clip, frame = takes.clip[rows], takes.frame[rows]
@@ -97,13 +97,13 @@ class Segments:
                 np.abs(frame[:, :rank] - frame[:, rank, None]) < _APART
             )
             left[:, rank] &= ~(close & left[:, :rank]).any(axis=1)
-        return left
+        return np.asarray(left)
 
 
 def _spread(block: Floats) -> Floats:
     """Return the size of a block `(N, D)`: so that its squares sum to 1 on average."""
     centred = block - block.mean(axis=0)
-    return np.sqrt(np.mean(np.sum(centred * centred, axis=1)))
+    return np.asarray(np.sqrt(np.mean(np.sum(centred * centred, axis=1))))
 
 
 def _flat(points: Vectors) -> Floats:

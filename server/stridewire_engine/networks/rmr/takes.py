@@ -110,7 +110,7 @@ class Takes:
         first = first[room]
         moving = np.concatenate([[0], np.cumsum(self.locomotion)])
         share = (moving[first + frames] - moving[first]) / frames
-        return first[share > 0.5]
+        return np.asarray(first[share > 0.5])
 
     def root_path(self, rows: Indices) -> tuple[Vectors, Floats]:
         """Return roots `(N, T, 3)` and yaws `(N, T)` of rows `(N, T)`, the first at the origin."""
