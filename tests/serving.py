@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import AsyncGenerator, Awaitable, Callable, Iterator, Sequence
 from functools import cache
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import grpc
 import pytest
@@ -30,6 +30,14 @@ KINDS = ("idle", "walk", "stroll")
 """Names of the synthetic clips that make the small library."""
 DEADLINE_S = 20.0
 """Longest wait for what is expected to happen soon; generous, for slow machines."""
+
+
+class Doors(NamedTuple):
+    """Where a server listens, and what stops it."""
+
+    grpc: str
+    websocket: str
+    stop: Stop
 
 
 class HeldRuntime(Runtime):
@@ -173,6 +181,29 @@ def stopping(loop_thread: LoopThread, small_library: Library) -> Iterator[tuple[
     stop()
 
 
+@pytest.fixture(scope="session")
+def door(loop_thread: LoopThread, small_library: Library) -> Iterator[Doors]:
+    """Return the doors of a server with both, which the whole run shares."""
+    doors = _open_doors(loop_thread, Runtime([small_library]), drain_s=0.2)
+    yield doors
+    doors.stop()
+
+
+@pytest.fixture
+def own_door(loop_thread: LoopThread, small_library: Library) -> Iterator[Callable[..., Doors]]:
+    """Return a starter of servers with both doors of a test's own; settings can be given."""
+    opened = []
+
+    def start(**given: Any) -> Doors:
+        settings = {"drain_s": 0.2, **given}
+        opened.append(_open_doors(loop_thread, Runtime([small_library]), **settings))
+        return opened[-1]
+
+    yield start
+    for doors in opened:
+        doors.stop()
+
+
 @pytest.fixture
 def client(address: str) -> Iterator[Client]:
     """Return a client of the shared server."""
@@ -237,3 +268,9 @@ def _start(
         return server, await server.start()
 
     return thread.call(start())
+
+
+def _open_doors(thread: LoopThread, runtime: Runtime, **given: Any) -> Doors:
+    settings = ServerSettings("127.0.0.1:0", websocket="127.0.0.1:0", **given)
+    server, bound = _start(thread, runtime, settings)
+    return Doors(bound, server.websocket_address, cache(lambda: thread.call(server.stop())))

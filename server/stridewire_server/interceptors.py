@@ -1,17 +1,12 @@
 """What stands around every method: errors become statuses, faults are logged and not leaked."""
 
-import logging
-import uuid
 from collections.abc import Awaitable, Callable
 from typing import Any
 
 import grpc
-from google.protobuf.message import DecodeError
 
 from stridewire._codec.status import DETAILS_KEY, encode_details
-from stridewire._errors import StridewireError
-
-log = logging.getLogger("stridewire.server")
+from stridewire_server.faults import as_error
 
 Method = Callable[[Any, Any], Awaitable[Any]]
 
@@ -36,20 +31,11 @@ def _guarded(method: Method, name: str) -> Method:
     async def guarded(request: Any, context: Any) -> Any:
         try:
             return await method(request, context)
-        except StridewireError as error:
-            metadata = ((DETAILS_KEY, encode_details(error)),)
-            await context.abort(grpc.StatusCode[error.code], str(error), metadata)
         except grpc.aio.AbortError:
             raise
-        except DecodeError:
-            await context.abort(
-                grpc.StatusCode.INVALID_ARGUMENT, "the bytes are no message of this method"
-            )
-        except Exception:
-            fault = uuid.uuid4().hex[:12]
-            log.exception("fault %s in %s", fault, name)
-            await context.abort(
-                grpc.StatusCode.INTERNAL, f"internal error; the server's log has it as {fault}"
-            )
+        except Exception as caught:
+            error = as_error(caught, name)
+            metadata = ((DETAILS_KEY, encode_details(error)),)
+            await context.abort(grpc.StatusCode[error.code], str(error), metadata)
 
     return guarded

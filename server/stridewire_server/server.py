@@ -27,7 +27,9 @@ from stridewire_server.services.later import StitchService
 from stridewire_server.services.library import LibraryService
 from stridewire_server.services.match import MatchService
 from stridewire_server.settings import ServerSettings
+from stridewire_server.streaming.sessions import Sessions
 from stridewire_server.ticker import Ticker
+from stridewire_server.websocket.door import Page, WebSocketDoor
 
 _GRACE_S = 0.5
 """For calls that are still open when the time of open sessions is up."""
@@ -43,16 +45,29 @@ _LATER = (stitch_pb2.DESCRIPTOR.services_by_name["StitchService"].full_name,)
 
 
 class AnimationServer:
-    """Serves a runtime until it is stopped; to be made and used in one event loop."""
+    """Serves a runtime until it is stopped; to be made and used in one event loop.
 
-    def __init__(self, runtime: Runtime, settings: ServerSettings) -> None:
+    Args:
+        runtime: Its libraries are open.
+        settings: Of this process.
+        page: What the WebSocket door serves beside streams.
+    """
+
+    def __init__(
+        self, runtime: Runtime, settings: ServerSettings, page: Page | None = None
+    ) -> None:
         self._settings = settings
         self._ticker = Ticker(runtime)
-        self._animation = AnimationService(self._ticker, settings)
+        self._sessions = Sessions(self._ticker, settings)
         self._health = health.aio.HealthServicer()  # type: ignore[attr-defined]
         self._server = grpc.aio.server(
             interceptors=[ErrorInterceptor()], options=settings.channel_options(runtime.limits)
         )
+        self._door: WebSocketDoor | None = None
+        if settings.websocket:
+            self._door = WebSocketDoor(self._sessions, settings, runtime.limits, page)
+        self.websocket_address = ""
+        """Where the WebSocket door listens, once it does."""
 
     async def start(self) -> str:
         """Listen, warm the libraries up, become healthy; returns the bound address.
@@ -65,15 +80,19 @@ class AnimationServer:
         address = self._bind()
         await self._server.start()
         await self._ticker.call(warm_up, self._ticker.runtime)
+        if self._door is not None:
+            self.websocket_address = await self._door.start()
         await self._set_health(health_pb2.HealthCheckResponse.SERVING)
         return address
 
     async def stop(self) -> None:
         """Stop in good order: no longer healthy, open sessions warned and awaited, then the end."""
         await self._set_health(health_pb2.HealthCheckResponse.NOT_SERVING)
-        await self._animation.drain()
+        await self._sessions.drain()
+        if self._door is not None:
+            await self._door.stop()
         await self._server.stop(grace=_GRACE_S)
-        await self._animation.wait_until_empty(_GRACE_S)
+        await self._sessions.wait_until_empty(_GRACE_S)
         self._ticker.shut_down()
 
     async def wait(self) -> None:
@@ -82,7 +101,9 @@ class AnimationServer:
 
     def _register(self) -> None:
         server, ticker = self._server, self._ticker
-        animation_pb2_grpc.add_AnimationServiceServicer_to_server(self._animation, server)
+        animation_pb2_grpc.add_AnimationServiceServicer_to_server(
+            AnimationService(self._sessions), server
+        )
         match_pb2_grpc.add_MatchServiceServicer_to_server(MatchService(ticker), server)
         library_pb2_grpc.add_LibraryServiceServicer_to_server(
             LibraryService(ticker.runtime), server

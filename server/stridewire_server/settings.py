@@ -15,8 +15,12 @@ class ServerSettings:
 
     address: str = DEFAULT_ADDRESS
     """Where to listen, `host:port`; port 0 lets the system choose one."""
+    websocket: str = ""
+    """Where the WebSocket door listens, `host:port`; empty means nowhere."""
+    origins: tuple[str, ...] = ()
+    """Origins of pages that may come through that door, beside its own."""
     max_sessions: int = 256
-    """Sessions at the same time; one more is refused with RESOURCE_EXHAUSTED."""
+    """Sessions at the same time, whatever the door; one more is refused with RESOURCE_EXHAUSTED."""
     drain_s: float = 10.0
     """Time that open sessions are given when the server stops."""
 

@@ -3,8 +3,10 @@
 from serving import (
     address,
     client,
+    door,
     either,
     loop_thread,
+    own_door,
     raw_stream,
     serve,
     small_library,
@@ -14,8 +16,10 @@ from serving import (
 __all__ = [
     "address",
     "client",
+    "door",
     "either",
     "loop_thread",
+    "own_door",
     "raw_stream",
     "serve",
     "small_library",

@@ -64,6 +64,7 @@ THIRD_PARTY = {
         "grpc_reflection",
         "grpc_status",
         "numpy",
+        "websockets",
     },
     "stridewire_models": {"click", "numpy", "onnx", "onnxruntime", "scipy", "torch"},
     "stridewire_loadtest": {"click", "grpc", "hdrh", "numpy"},

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from stridewire_engine.library import Library
     from stridewire_engine.runtime.runtime import Recorder
     from stridewire_server.server import AnimationServer
+    from stridewire_server.settings import ServerSettings
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -30,6 +31,19 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
     "the embedded synthetic library.",
 )
 @click.option("--address", default="127.0.0.1:50051", show_default=True, help="Port 0 picks one.")
+@click.option(
+    "--websocket",
+    default="",
+    metavar="HOST:PORT",
+    help="Serve streams through WebSockets, too, at ws://HOST:PORT/v1/animate.",
+)
+@click.option(
+    "--origin",
+    "origins",
+    multiple=True,
+    metavar="http://HOST:PORT",
+    help="Let pages of this origin come through the WebSocket door; may be given again.",
+)
 @click.option("--insecure", is_flag=True, help="Allow an address that other machines can reach.")
 @click.option(
     "--record",
@@ -38,23 +52,40 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object when ready.")
 def serve(
-    libraries: tuple[str, ...], address: str, insecure: bool, record: Path | None, as_json: bool
+    libraries: tuple[str, ...],
+    address: str,
+    websocket: str,
+    origins: tuple[str, ...],
+    insecure: bool,
+    record: Path | None,
+    as_json: bool,
 ) -> None:
     """Serve characters over gRPC until SIGTERM or Ctrl-C."""
-    for name in _THREADS:  # before numpy is loaded: more threads only fight the tick
-        os.environ.setdefault(name, "1")
-    from stridewire_server.settings import is_loopback
+    calm_threads()
+    from stridewire_server.settings import ServerSettings, is_loopback
 
-    if not (insecure or is_loopback(address)):
-        raise click.UsageError(
-            f"{address} can be reached by other machines and this server asks nobody who they are; "
-            "add --insecure to serve there all the same"
-        )
+    for given in filter(None, (address, websocket)):
+        if not (insecure or is_loopback(given)):
+            raise click.UsageError(
+                f"{given} can be reached by other machines and this server asks nobody who they "
+                "are; add --insecure to serve there all the same"
+            )
     logging.basicConfig(format="%(asctime)s %(levelname)s %(name)s: %(message)s")
-    asyncio.run(_serve(_open(libraries), address, record, as_json))
+    settings = ServerSettings(address=address, websocket=websocket, origins=origins)
+    asyncio.run(_serve(open_libraries(libraries), settings, record, as_json))
 
 
-def _open(given: tuple[str, ...]) -> "list[Library]":
+def calm_threads() -> None:
+    """Keep numeric libraries to one thread each; more only fight the tick.
+
+    To be called before numpy is loaded.
+    """
+    for name in _THREADS:
+        os.environ.setdefault(name, "1")
+
+
+def open_libraries(given: tuple[str, ...]) -> "list[Library]":
+    """Open the libraries that were named, `[NAME=]FOLDER`, or the embedded one."""
     from dataclasses import replace
 
     from stridewire_engine.building import open_library
@@ -73,17 +104,16 @@ def _open(given: tuple[str, ...]) -> "list[Library]":
 
 
 async def _serve(
-    libraries: "list[Library]", address: str, record: Path | None, as_json: bool
+    libraries: "list[Library]", settings: "ServerSettings", record: Path | None, as_json: bool
 ) -> None:
     from stridewire_engine.runtime import Runtime
     from stridewire_server.server import AnimationServer
-    from stridewire_server.settings import ServerSettings
 
     runtime = Runtime(libraries, record=None if record is None else _recorder(record))
-    server = AnimationServer(runtime, ServerSettings(address=address))
+    server = AnimationServer(runtime, settings)
     bound = await server.start()
-    _announce(bound, libraries, as_json)
-    await _wait_for_signal()
+    _announce(bound, server.websocket_address, libraries, as_json)
+    await wait_for_signal()
     await _stop(server)
 
 
@@ -100,19 +130,23 @@ def _recorder(folder: Path) -> "Recorder":
     return record
 
 
-def _announce(address: str, libraries: "list[Library]", as_json: bool) -> None:
+def _announce(address: str, websocket: str, libraries: "list[Library]", as_json: bool) -> None:
     infos = [library.info() for library in libraries]
     if as_json:
         names = [{"name": info.name, "synthetic": info.synthetic} for info in infos]
-        click.echo(json.dumps({"address": address, "libraries": names}))
+        door = {"websocket": websocket} if websocket else {}
+        click.echo(json.dumps({"address": address, **door, "libraries": names}))
         return
     click.echo(f"listening on {address}")
+    if websocket:
+        click.echo(f"listening on ws://{websocket}/v1/animate")
     for info in infos:
         kind = "synthetic" if info.synthetic else "captured"
         click.echo(f"library {info.name} ({kind}, {info.clips} clips, {info.frames} frames)")
 
 
-async def _wait_for_signal() -> None:
+async def wait_for_signal() -> None:
+    """Wait for SIGTERM or Ctrl-C; a second one ends the process at once."""
     asked = asyncio.Event()
     loop = asyncio.get_running_loop()
     for number in (signal.SIGTERM, signal.SIGINT):

@@ -1,93 +1,34 @@
-"""AnimationService: live streams."""
+"""AnimationService: live streams over gRPC."""
 
-import asyncio
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from typing import Any
 
 from grpc.aio import EOF  # type: ignore[attr-defined]
 
-from stridewire._codec.requests import decode_request
-from stridewire._errors import ExhaustedError, ProtocolError, UnavailableError
-from stridewire._messages import Notice, Open
 from stridewire.v1 import animation_pb2 as pb
 from stridewire.v1.animation_pb2_grpc import AnimationServiceServicer
-from stridewire_server.settings import ServerSettings
-from stridewire_server.streaming.stream import AnimateStream
-from stridewire_server.ticker import Ticker
+from stridewire_server.streaming.sessions import Sessions
 
 
 class AnimationService(AnimationServiceServicer):
-    """Opens sessions and keeps them until they end."""
+    """Serves streams; the sessions are the server's, whatever door they come through."""
 
-    def __init__(self, ticker: Ticker, settings: ServerSettings) -> None:
-        self._ticker = ticker
-        self._settings = settings
-        self._places = settings.max_sessions
-        self._streams: set[AnimateStream] = set()
-        self._draining = False
-        self._empty = asyncio.Event()
-        self._empty.set()
+    def __init__(self, sessions: Sessions) -> None:
+        self._sessions = sessions
 
     async def Animate(self, request_iterator: Any, context: Any) -> None:
         """Serve one stream."""
-        opening = await _read_open(context)
-        with self._place():
-            session = await self._ticker.open(opening)
-            stream = AnimateStream(context, self._ticker, session)
-            self._streams.add(stream)
-            try:
-                await stream.run()
-            finally:
-                self._streams.discard(stream)
-                self._ticker.close_session(session)
-
-    async def drain(self) -> None:
-        """Open nothing more, tell those who are here, and wait for them as long as is allowed."""
-        self._draining = True
-        for stream in self._streams:
-            stream.notify(
-                Notice(
-                    pb.NOTICE_KIND_DRAINING,
-                    f"the server stops in {self._settings.drain_s:g} s; open a session elsewhere",
-                    self._settings.drain_s,
-                )
-            )
-        await self.wait_until_empty(self._settings.drain_s)
-
-    async def wait_until_empty(self, timeout_s: float) -> None:
-        """Wait until no session is open, or until the time is up."""
-        with suppress(TimeoutError):
-            await asyncio.wait_for(self._empty.wait(), timeout_s)
-
-    @contextmanager
-    def _place(self) -> Iterator[None]:
-        """Hold one of the places that the server has for sessions."""
-        if self._draining:
-            raise UnavailableError("the server is stopping; open the session elsewhere")
-        if not self._places:
-            raise ExhaustedError(
-                f"all {self._settings.max_sessions} sessions are taken; end one, try later, or put "
-                "more characters into one session",
-                retry_after_s=1.0,
-            )
-        self._places -= 1
-        self._empty.clear()
-        try:
-            yield
-        finally:
-            self._places += 1
-            if self._places == self._settings.max_sessions:
-                self._empty.set()
+        await self._sessions.serve(_GrpcWire(context))
 
 
-async def _read_open(context: Any) -> Open:
-    request = await context.read()
-    if request is EOF:
-        raise ProtocolError("the stream ended before Open; send Open first")
-    message = decode_request(request)
-    if not isinstance(message, Open):
-        raise ProtocolError(
-            f"{type(message).__name__} before Open; the first message of a stream is Open"
-        )
-    return message
+class _GrpcWire:
+    """The wire of a gRPC stream; its messages are decoded by gRPC."""
+
+    def __init__(self, context: Any) -> None:
+        self._context = context
+
+    async def read(self) -> pb.AnimateRequest | None:
+        request: pb.AnimateRequest = await self._context.read()
+        return None if request is EOF else request
+
+    async def write(self, response: pb.AnimateResponse) -> None:
+        await self._context.write(response)

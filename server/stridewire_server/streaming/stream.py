@@ -2,9 +2,6 @@
 
 import asyncio
 from dataclasses import replace
-from typing import Any
-
-from grpc.aio import EOF  # type: ignore[attr-defined]
 
 from stridewire._codec.requests import decode_bare_step, decode_request
 from stridewire._codec.status import MAX_VIOLATIONS
@@ -14,6 +11,7 @@ from stridewire.v1 import animation_pb2 as pb
 from stridewire_engine.runtime import Session
 from stridewire_server.streaming.outbox import Outbox
 from stridewire_server.streaming.schedule import Schedule
+from stridewire_server.streaming.wire import Wire
 from stridewire_server.streaming.writer import Writer
 from stridewire_server.ticker import Advanced, Ticker
 
@@ -21,17 +19,17 @@ from stridewire_server.ticker import Advanced, Ticker
 class AnimateStream:
     """One open session; reads the next message only when the last one is done with.
 
-    So a client that floods its stream is held back by HTTP/2 and not by memory.
+    So a client that floods its stream is held back by its transport and not by memory.
     """
 
-    def __init__(self, context: Any, ticker: Ticker, session: Session) -> None:
-        self._context = context
+    def __init__(self, wire: Wire, ticker: Ticker, session: Session) -> None:
+        self._wire = wire
         self._ticker = ticker
         self._runtime = ticker.runtime
         self._session = session
         self._settings = session.opened.settings
         self._outbox = Outbox(self._settings.max_frames_in_flight)
-        self._writer = Writer(context, self._outbox, session.opened.limits.write_timeout_s)
+        self._writer = Writer(wire, self._outbox, session.opened.limits.write_timeout_s)
 
     def notify(self, notice: Notice) -> None:
         """Send news."""
@@ -63,7 +61,7 @@ class AnimateStream:
             await self._writer.settle()
 
     async def _read_all(self) -> None:
-        while (request := await self._context.read()) is not EOF:
+        while (request := await self._wire.read()) is not None:
             match self._decode(request):
                 case Step() as step, violations:
                     await self._take_step(step, violations)

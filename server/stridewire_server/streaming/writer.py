@@ -5,19 +5,19 @@ lets one write take too long ends its stream instead.
 """
 
 import asyncio
-from typing import Any
 
 from stridewire._codec.responses import encode_response
 from stridewire._errors import ExhaustedError
 from stridewire.v1 import animation_pb2 as pb
 from stridewire_server.streaming.outbox import Outbox
+from stridewire_server.streaming.wire import Wire
 
 
 class Writer:
     """Writes what an outbox hands out."""
 
-    def __init__(self, context: Any, outbox: Outbox, timeout_s: float) -> None:
-        self._context = context
+    def __init__(self, wire: Wire, outbox: Outbox, timeout_s: float) -> None:
+        self._wire = wire
         self._outbox = outbox
         self._timeout_s = timeout_s
         self._under_way: asyncio.Future[None] | None = None
@@ -41,7 +41,7 @@ class Writer:
             await asyncio.wait({self._under_way}, timeout=self._timeout_s)
 
     async def _write(self, response: pb.AnimateResponse) -> None:
-        writing = asyncio.ensure_future(self._context.write(response))
+        writing = asyncio.ensure_future(self._wire.write(response))
         writing.add_done_callback(_forget)
         self._under_way = writing
         done, _ = await asyncio.wait({writing}, timeout=self._timeout_s)

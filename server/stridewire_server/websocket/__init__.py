@@ -1,0 +1,1 @@
+"""The WebSocket door: the messages of Animate for browsers and for engines without gRPC."""
