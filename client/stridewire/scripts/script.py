@@ -32,18 +32,20 @@ class Script:
     """One line for lists."""
     pattern: Pattern
 
-    def controls(self, time_s: float, characters: int, seed: int = 0) -> Controls:
-        """Return the controls of characters 0 to `characters` - 1 at a moment.
+    def controls(self, time_s: float | Floats, characters: int, seed: int = 0) -> Controls:
+        """Return the controls of characters 0 to `characters` - 1 at a moment, or at many.
 
         Args:
-            time_s: Seconds since the script began.
+            time_s: Seconds since the script began; `(T, 1)` asks for T moments, and what is
+                returned has T in front.
             characters: How many, N.
             seed: Draws headings, phases and sides.
         """
         speed, heading, facing = self.pattern(time_s, Cast(seed, np.arange(characters)))
-        velocity = speed[:, None] * np.stack([np.sin(heading), np.cos(heading)], axis=-1)
-        if facing is None:
-            facing = np.full(characters, np.nan)
+        shape = np.broadcast_shapes(np.shape(time_s), (characters,))
+        heading = np.broadcast_to(heading, shape)
+        velocity = speed[..., None] * np.stack([np.sin(heading), np.cos(heading)], axis=-1)
+        facing = np.broadcast_to(np.nan if facing is None else facing, shape)
         return Controls(velocity.astype(np.float32), facing.astype(np.float32))
 
 

@@ -7,6 +7,7 @@ import multiprocessing
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import replace
 from pathlib import Path
 
 import stridewire.motion
@@ -14,12 +15,14 @@ import stridewire_engine
 from stridewire_engine.evaluation import tally
 from stridewire_engine.evaluation.captured import Captured
 from stridewire_engine.evaluation.cell import Cell
-from stridewire_engine.evaluation.figures import Blocks, Figures, captured_row, streamed_row
-from stridewire_engine.evaluation.naive import naive_stream
-from stridewire_engine.evaluation.streaming import Stream, Wanted, stream, wanted_of
+from stridewire_engine.evaluation.figures import Blocks, Figures, Judged
+from stridewire_engine.evaluation.naive import naive_streams
+from stridewire_engine.evaluation.streaming import PER_SEED, Stream, Wanted, streams, wanted_of
 from stridewire_engine.library import Library
 from stridewire_engine.matching.search import Matcher
 
+_MOST_CHARACTERS = 400
+"""Share their ticks: Python's part of a tick is small then, and the frames fit into memory."""
 BLOCKS = ("all", "0", "1", "2", "3")
 Measurement = Mapping[str, Figures]
 """Figures by block of frames since the last transition, and `captured` for the frames played."""
@@ -40,21 +43,33 @@ class Bench:
 
     def run(self, cell: Cell) -> Stream:
         """Make the motion of a cell."""
-        return self.run_wanted(cell, wanted_of(cell))
+        return next(self.run_all([cell]))
 
-    def run_wanted(self, cell: Cell, wanted: Wanted) -> Stream:
-        """Make the motion of a cell under given controls."""
-        make = naive_stream if cell.row == "naive" else stream
-        return make(self.library, self._matcher, cell, wanted)
+    def run_all(self, cells: Sequence[Cell]) -> Iterator[Stream]:
+        """Make the motion of cells that share their ticks."""
+        scripts = {replace(cell, stitch="", foot_lock=True) for cell in cells}
+        asked = {cell: wanted_of(cell) for cell in scripts}
+        return self.run_under(cells, [asked[replace(c, stitch="", foot_lock=True)] for c in cells])
+
+    def run_under(self, cells: Sequence[Cell], wanted: Sequence[Wanted]) -> Iterator[Stream]:
+        """Make the motion of cells under given controls."""
+        make = naive_streams if cells[0].row == "naive" else streams
+        return make(self.library, self._matcher, cells, wanted)
 
     def measure(self, cell: Cell) -> Measurement:
         """Make the motion of a cell and measure it."""
-        made = self.run(cell)
-        blocks = Blocks(made)
-        every = blocks.mask("all")
+        return self.judge(self.run(cell))
+
+    def measure_all(self, cells: Sequence[Cell]) -> Iterator[Measurement]:
+        """Make the motion of cells that share their ticks and measure each."""
+        return (self.judge(made) for made in self.run_all(cells))
+
+    def judge(self, made: Stream) -> Measurement:
+        """Measure motion that was made."""
+        blocks, judged = Blocks(made), Judged(made, self.captured)
         return {
-            **{name: streamed_row(made, self.captured, blocks.mask(name)) for name in BLOCKS},
-            "captured": captured_row(made, self.captured, every),
+            **{name: judged.streamed(blocks.mask(name)) for name in BLOCKS},
+            "captured": judged.captured(blocks.mask("all")),
         }
 
 
@@ -72,20 +87,37 @@ def measure_cells(
     library_hash = Library.open(path).manifest.content_hash
     code = code_hash()
     files = {cell: cache / f"{cell.key(library_hash, code)}.json" for cell in cells}
-    missing = [cell for cell, file in files.items() if not file.exists()]
     for cell, file in files.items():
         if file.exists():
             yield cell, _read(file)
     cache.mkdir(parents=True, exist_ok=True)
-    if jobs == 1 or len(missing) < 2:
-        for cell in missing:
-            yield cell, _keep(_bench(path).measure(cell), files[cell])
+    work = list(_batches([cell for cell, file in files.items() if not file.exists()]))
+    if jobs == 1 or len(work) < 2:
+        for batch in work:
+            for cell, measurement in zip(batch, _bench(path).measure_all(batch), strict=True):
+                yield cell, _keep(measurement, files[cell])
         return
     spawn = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(jobs, len(missing)), mp_context=spawn) as pool:
-        pending = {pool.submit(_measure, path, cell, files[cell]): cell for cell in missing}
+    with ProcessPoolExecutor(min(jobs, len(work)), mp_context=spawn) as pool:
+        pending = {pool.submit(_measure, path, {c: files[c] for c in b}): b for b in work}
         for future in as_completed(pending):
-            yield pending[future], _read(future.result())
+            future.result()
+            yield from ((cell, _read(files[cell])) for cell in pending[future])
+
+
+def _batches(cells: Sequence[Cell]) -> Iterator[list[Cell]]:
+    """Yield cells that share their ticks, up to `_MOST_CHARACTERS` together."""
+    for tick in dict.fromkeys(cell.tick for cell in cells):
+        batch: list[Cell] = []
+        count = 0
+        for cell in (cell for cell in cells if cell.tick == tick):
+            characters = PER_SEED * len(cell.seeds)
+            if batch and count + characters > _MOST_CHARACTERS:
+                yield batch
+                batch, count = [], 0
+            batch.append(cell)
+            count += characters
+        yield batch
 
 
 def code_hash() -> str:
@@ -109,9 +141,10 @@ def _bench(path: Path) -> Bench:
     return Bench(path)
 
 
-def _measure(path: Path, cell: Cell, file: Path) -> Path:
-    _keep(_bench(path).measure(cell), file)
-    return file
+def _measure(path: Path, files: Mapping[Cell, Path]) -> None:
+    cells = list(files)
+    for cell, measurement in zip(cells, _bench(path).measure_all(cells), strict=True):
+        _keep(measurement, files[cell])
 
 
 def _keep(measurement: Measurement, file: Path) -> Measurement:

@@ -5,6 +5,7 @@ clips, and a stream of sprints is not compared with captured standing.
 """
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 
@@ -100,8 +101,9 @@ class Captured:
         self.step_limits: Floats = np.nanpercentile(self.frames.step, _STEP_PERCENT, axis=0)
         """`(J,)` changes of velocity that captured joints hardly ever exceed, m/s."""
 
+    @cached_property
     def toes_under_root(self) -> Vectors:
-        """Return the toes `(F, 2, 3)` in the root's frame."""
+        """The toes `(F, 2, 3)` in the root's frame."""
         library = self.library
         toes = self.positions[:, library.skeleton.indices(TOES)] - library.root_position[:, None]
         sine, cosine = np.sin(library.root_yaw)[:, None], np.cos(library.root_yaw)[:, None]

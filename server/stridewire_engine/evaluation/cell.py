@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 from stridewire_engine.runtime import TickSettings
 
@@ -37,6 +37,11 @@ class Cell:
     label_shift_frames: int = 0
     """Contact labels come so many frames late; negative: early."""
     settings: TickSettings = _DEFAULTS
+
+    @property
+    def tick(self) -> "Cell":
+        """All that the tick itself depends on: cells where it is equal can share their ticks."""
+        return replace(self, script="", stitch="", foot_lock=True, seeds=())
 
     def key(self, library_hash: str, code_hash: str) -> str:
         """Return a name for the cache that changes with anything the result depends on."""

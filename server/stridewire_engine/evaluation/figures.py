@@ -34,50 +34,65 @@ def of_motion(frames: Measured) -> Figures:
     }
 
 
-def captured_row(stream: Stream, captured: Captured, mask: Flags) -> Figures:
-    """Return the figures of the captured frames that the stream played."""
-    frames = masked(captured.frames[stream.rows], mask)
-    beyond = _beyond(frames.step, captured, mask & (stream.since < _AFTER_SEAM))
-    one = Mean.of(frames.jerk)
-    return {
-        **of_motion(frames),
-        "jump_pct": Mean.of(beyond, 100.0),
-        "jerk_ratio": one.relative_to(one),
-        "toe_jerk": Mean.of(frames.toe_jerk),
-        "knee_jerk": Mean.of(frames.knee_jerk),
-        "frames": _count(mask),
-    }
+class Judged:
+    """A stream measured once, frame by frame; figures are read off it for any of its frames."""
 
+    def __init__(self, stream: Stream, captured: Captured) -> None:
+        """Measure all frames."""
+        library = captured.library
+        planted = library.contacts[stream.rows][..., 1::2]
+        toes = stream.positions[..., library.skeleton.indices(TOES), :]
+        self._stream, self._captured = stream, captured
+        self._shown = measure(library.skeleton, stream.positions, planted, captured.floor, RATE)
+        self._played = captured.frames[stream.rows]
+        self._offset = metrics.lock_offset(toes, stream.foot_targets)
+        self._locked = metrics.locked_share(stream.foot_targets, planted)
+        self._lag = _lag(stream, captured, toes)
+        self._truth = _truth_error(stream, captured)
+        position = stream.pose.root_position[..., [0, 2]]
+        self._away = metrics.following_error(position, stream.wanted.velocity, RATE)
+        self._seams = np.zeros(stream.since.shape)
+        self._seams[stream.seams.frame, stream.seams.character] = 1.0
 
-def streamed_row(stream: Stream, captured: Captured, mask: Flags) -> Figures:
-    """Return the figures of a stream, where `mask` `(T, S)` says so."""
-    library = captured.library
-    planted = library.contacts[stream.rows][..., 1::2]
-    measured = measure(library.skeleton, stream.positions, planted, captured.floor, RATE)
-    frames, played = masked(measured, mask), masked(captured.frames[stream.rows], mask)
-    toes = stream.positions[..., library.skeleton.indices(TOES), :]
-    shown = mask[..., None]
-    offset = np.where(shown, metrics.lock_offset(toes, stream.foot_targets), np.nan)
-    locked = np.where(shown, metrics.locked_share(stream.foot_targets, planted), np.nan)
-    beyond = _beyond(frames.step, captured, mask & (stream.since < _AFTER_SEAM))
-    seams = np.zeros(mask.shape)
-    seams[stream.seams.frame, stream.seams.character] = 1.0
-    position = stream.pose.root_position[..., [0, 2]]
-    away = metrics.following_error(position, stream.wanted.velocity, RATE)
-    return {
-        **of_motion(frames),
-        "jerk_ratio": Mean.of(frames.jerk).relative_to(Mean.of(played.jerk)),
-        "toe_jerk": Mean.of(frames.toe_jerk),
-        "knee_jerk": Mean.of(frames.knee_jerk),
-        "jump_pct": Mean.of(beyond, 100.0),
-        "lock_offset_cm": Percentile.of(100.0 * offset, 95.0, 0.0, 40.0),
-        "locked_pct": Mean.of(locked, 100.0),
-        "clip_lag_cm": Mean.of(np.where(shown, _lag(stream, captured, toes), np.nan), 100.0),
-        "truth_error_cm": Mean.of(np.where(mask, _truth_error(stream, captured), np.nan), 100.0),
-        "following_error_m": Mean.of(np.where(mask, away, np.nan)),
-        "transitions_per_s": Mean.of(np.where(mask, seams, np.nan), RATE),
-        "frames": _count(mask),
-    }
+    def captured(self, mask: Flags) -> Figures:
+        """Return the figures of the captured frames that the stream played."""
+        frames = masked(self._played, mask)
+        one = Mean.of(frames.jerk)
+        return {
+            **of_motion(frames),
+            "jump_pct": Mean.of(self._beyond(frames.step, mask), 100.0),
+            "jerk_ratio": one.relative_to(one),
+            "toe_jerk": Mean.of(frames.toe_jerk),
+            "knee_jerk": Mean.of(frames.knee_jerk),
+            "frames": _count(mask),
+        }
+
+    def streamed(self, mask: Flags) -> Figures:
+        """Return the figures of the stream, where `mask` `(T, S)` says so."""
+        frames, played = masked(self._shown, mask), np.where(mask, self._played.jerk, np.nan)
+        feet = mask[..., None]
+        return {
+            **of_motion(frames),
+            "jerk_ratio": Mean.of(frames.jerk).relative_to(Mean.of(played)),
+            "toe_jerk": Mean.of(frames.toe_jerk),
+            "knee_jerk": Mean.of(frames.knee_jerk),
+            "jump_pct": Mean.of(self._beyond(frames.step, mask), 100.0),
+            "lock_offset_cm": Percentile.of(
+                100.0 * np.where(feet, self._offset, np.nan), 95.0, 0.0, 40.0
+            ),
+            "locked_pct": Mean.of(np.where(feet, self._locked, np.nan), 100.0),
+            "clip_lag_cm": Mean.of(np.where(feet, self._lag, np.nan), 100.0),
+            "truth_error_cm": Mean.of(np.where(mask, self._truth, np.nan), 100.0),
+            "following_error_m": Mean.of(np.where(mask, self._away, np.nan)),
+            "transitions_per_s": Mean.of(np.where(mask, self._seams, np.nan), RATE),
+            "frames": _count(mask),
+        }
+
+    def _beyond(self, step: Floats, mask: Flags) -> Floats:
+        """Return where joints changed their velocity by more than captured ones do, near seams."""
+        near = mask & (self._stream.since < _AFTER_SEAM)
+        jumps = (step > self._captured.step_limits).astype(np.float64)
+        return np.where(near[..., None] & ~np.isnan(step), jumps, np.nan)
 
 
 @dataclass(frozen=True)
@@ -104,11 +119,6 @@ def masked(frames: Measured, mask: Flags) -> Measured:
     return Measured(*out)
 
 
-def _beyond(step: Floats, captured: Captured, mask: Flags) -> Floats:
-    jumps = (step > captured.step_limits).astype(np.float64)
-    return np.where(mask[..., None] & ~np.isnan(step), jumps, np.nan)
-
-
 def _count(mask: Flags) -> Mean:
     """Return the number of frames, as a sum over units."""
     total = mask.sum(axis=0).astype(np.float64)
@@ -117,7 +127,7 @@ def _count(mask: Flags) -> Mean:
 
 def _lag(stream: Stream, captured: Captured, toes: Floats) -> Floats:
     """Return the distance `(T, S, 2)` of the sent toes from the clip's under the sent root."""
-    local = captured.toes_under_root()
+    local = captured.toes_under_root
     weight = stream.moments.weight[..., None, None]
     first, second = local[stream.moments.rows], local[stream.moments.rows + 1]
     return metrics.distance(toes, under_root(stream, first + weight * (second - first)))

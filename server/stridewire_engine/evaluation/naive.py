@@ -4,13 +4,15 @@ An exact search every frame, a cross-fade of 0.2 s from the old clip, which play
 one, and the clip's own root motion: no bias, no adjustment of the root, nothing for the feet.
 """
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 
 from stridewire._messages import TransitionReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Floats
 from stridewire_engine.evaluation.cell import Cell
-from stridewire_engine.evaluation.streaming import RATE, Stream, Wanted, begin, record
+from stridewire_engine.evaluation.streaming import RATE, Stream, Wanted, begin_all, record
 from stridewire_engine.library import Library
 from stridewire_engine.matching.search import Matcher
 from stridewire_engine.runtime import TickSettings, choice, intent, sampling
@@ -23,11 +25,13 @@ _SETTINGS = TickSettings(
 )
 
 
-def naive_stream(library: Library, matcher: Matcher, cell: Cell, wanted: Wanted) -> Stream:
-    """Drive characters without any of the tick's care."""
-    state = begin(matcher, cell, wanted, _SETTINGS)
+def naive_streams(
+    library: Library, matcher: Matcher, cells: Sequence[Cell], wanted: Sequence[Wanted]
+) -> Iterator[Stream]:
+    """Drive the characters of several cells without any of the tick's care."""
+    state = begin_all(matcher, cells, wanted, _SETTINGS)
     tick = _NaiveTick(matcher, state)
-    return record(library, state, wanted, tick.step)
+    yield from record(library, state, wanted, tick.step)
 
 
 class _NaiveTick:

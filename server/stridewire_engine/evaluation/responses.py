@@ -52,9 +52,8 @@ def measure_responses(
     bench: Bench, settings: TickSettings, seeds: tuple[int, ...] = REPORT_SEEDS
 ) -> Iterator[dict[str, Any]]:
     """Yield one flat row for each change."""
-    for change in CHANGES:
+    for change, times in zip(CHANGES, streamed_times(bench, settings, seeds), strict=True):
         events = library_times(bench.library, change)
-        times = streamed_times(bench, change, settings, seeds)
         finite = np.minimum(times, _LONGEST_S)
         drawn = np.random.default_rng(0).choice(finite, (DRAWS, len(finite))).mean(axis=1)
         own = float(np.percentile(events, 25.0)) if len(events) >= LEAST_EVENTS else None
@@ -72,20 +71,21 @@ def measure_responses(
 
 
 def streamed_times(
-    bench: Bench, change: Change, settings: TickSettings, seeds: tuple[int, ...]
-) -> Floats:
-    """Return for each character the seconds from the command to 90 % of the change."""
-    wanted, at = _wanted(change, seeds)
-    cell = Cell(change.name, seeds=seeds, settings=settings)
-    made = bench.run_wanted(cell, wanted)
-    speed = smooth_speed(made.pose.root_position[..., [0, 2]])
-    yaw = np.unwrap(quaternion.to_yaw(made.pose.root_rotation), axis=0)
-    times = np.full(len(at), np.inf)
-    for character, frame in enumerate(at):
-        reached = _done(change, speed[frame:, character], yaw[frame:, character], character)
-        if reached.any():
-            times[character] = np.argmax(reached) / RATE
-    return times
+    bench: Bench, settings: TickSettings, seeds: tuple[int, ...]
+) -> Iterator[Floats]:
+    """Yield for each change the seconds that its characters take from the command to 90 %."""
+    cells = [Cell(change.name, seeds=seeds, settings=settings) for change in CHANGES]
+    asked = [_wanted(change, seeds) for change in CHANGES]
+    made = bench.run_under(cells, [wanted for wanted, _ in asked])
+    for change, (_, at), stream in zip(CHANGES, asked, made, strict=True):
+        speed = smooth_speed(stream.pose.root_position[..., [0, 2]])
+        yaw = np.unwrap(quaternion.to_yaw(stream.pose.root_rotation), axis=0)
+        times = np.full(len(at), np.inf)
+        for character, frame in enumerate(at):
+            reached = _done(change, speed[frame:, character], yaw[frame:, character], character)
+            if reached.any():
+                times[character] = np.argmax(reached) / RATE
+        yield times
 
 
 def library_times(library: Library, change: Change) -> Floats:

@@ -4,9 +4,10 @@ Characters of all seeds share the ticks. What a transition is forced on, a match
 that is driven faster than the clip, and late labels are made here, around the tick, not in it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
@@ -87,35 +88,45 @@ def wanted_of(cell: Cell) -> Wanted:
     frames = round(cell.seconds * RATE)
     velocity = np.empty((frames, len(cell.seeds) * PER_SEED, 2))
     facing = np.empty(velocity.shape[:2])
+    times = np.arange(frames)[:, None] / RATE
     for i, seed in enumerate(cell.seeds):
         mine = slice(i * PER_SEED, (i + 1) * PER_SEED)
-        for frame in range(frames):
-            velocity[frame, mine], facing[frame, mine] = asked.controls(
-                frame / RATE, PER_SEED, seed
-            )
+        velocity[:, mine], facing[:, mine] = asked.controls(times, PER_SEED, seed)
     return Wanted(velocity, facing)
 
 
-def stream(library: Library, matcher: Matcher, cell: Cell, wanted: Wanted) -> Stream:
-    """Drive characters through the tick.
+def streams(
+    library: Library, matcher: Matcher, cells: Sequence[Cell], wanted: Sequence[Wanted]
+) -> Iterator[Stream]:
+    """Drive the characters of several cells through the same ticks; yield a stream for each.
 
     Args:
         library: The library as it is; labels and rows are told of it.
         matcher: Of it.
-        cell: What is measured.
-        wanted: Controls.
+        cells: That differ in what is asked of their characters and in nothing else of the tick:
+            `Cell.tick` is the same.
+        wanted: Controls of each.
     """
-    settings = forced(cell.settings, cell.forced_interval_frames)
-    played = copy(matcher) if cell.match_rank == 1 else _RankedMatcher(matcher, cell.match_rank)
-    played.library = perturbed(library, cell.root_scale, cell.label_shift_frames)
-    state = begin(matcher, cell, wanted, settings)
-    names = [stitcher.name for stitcher in STITCHERS]
-    state.stitcher[:] = names.index(cell.stitch) if cell.stitch else 0
-    state.foot_lock[:] = cell.foot_lock
+    first = cells[0]
+    settings = forced(first.settings, first.forced_interval_frames)
+    rank = first.match_rank
+    played = copy(matcher) if rank == 1 else _RankedMatcher(matcher, rank)
+    played.library = perturbed(library, first.root_scale, first.label_shift_frames)
+    state = begin_all(matcher, cells, wanted, settings)
     tick = Tick(played, settings, _MAX_SPEED, lambda: 0.0)
     sets = {0: played.candidates.everything}
     dt = np.full(len(state), 1.0 / RATE)
-    return record(library, state, wanted, lambda: tick.step(state, dt, sets))
+    yield from record(library, state, wanted, lambda: tick.step(state, dt, sets))
+
+
+def begin_all(
+    matcher: Matcher, cells: Sequence[Cell], wanted: Sequence[Wanted], settings: TickSettings
+) -> Characters:
+    """Return the characters of all cells, one cell after the other."""
+    parts = [
+        begin(matcher, cell, asked, settings) for cell, asked in zip(cells, wanted, strict=True)
+    ]
+    return reduce(Characters.append, parts)
 
 
 def begin(matcher: Matcher, cell: Cell, wanted: Wanted, settings: TickSettings) -> Characters:
@@ -128,6 +139,9 @@ def begin(matcher: Matcher, cell: Cell, wanted: Wanted, settings: TickSettings) 
     state.until_search[:] = state.stagger * settings.search_interval
     state.root_position[:, 0] = _SPACING * np.arange(count)
     state.sim_position[:] = state.root_position[:, ::2]
+    names = [stitcher.name for stitcher in STITCHERS]
+    state.stitcher[:] = names.index(cell.stitch) if cell.stitch else 0
+    state.foot_lock[:] = cell.foot_lock
     heading = np.arctan2(wanted.velocity[0, :, 0], wanted.velocity[0, :, 1])
     heading = np.where(np.isnan(wanted.facing[0]), heading, wanted.facing[0])
     for angle in (state.root_yaw, state.sim_yaw, state.goal_yaw):
@@ -136,42 +150,76 @@ def begin(matcher: Matcher, cell: Cell, wanted: Wanted, settings: TickSettings) 
 
 
 def record(
-    library: Library, state: Characters, wanted: Wanted, step: Callable[[], Block]
-) -> Stream:
-    """Step once a frame and note what is shown and which moment is playing."""
-    blocks: list[Block] = []
+    library: Library, state: Characters, wanted: Sequence[Wanted], step: Callable[[], Block]
+) -> Iterator[Stream]:
+    """Step once a frame, note what is shown and which moment is playing; yield stream by stream.
+
+    Args:
+        library: That plays.
+        state: The characters, in the order of `wanted`.
+        wanted: Of each stream, all of the same length.
+        step: Makes a frame.
+    """
+    blocks: list[_Shown] = []
     playing, seams = [], []
     clip_before, time_before = state.clip.copy(), state.clip_time.copy()
-    for frame, (velocity, facing) in enumerate(zip(*wanted, strict=True)):
-        state.desired_velocity[:] = velocity
-        state.desired_facing[:] = facing
+    velocity = np.concatenate([asked.velocity for asked in wanted], axis=1)
+    facing = np.concatenate([asked.facing for asked in wanted], axis=1)
+    for frame in range(len(velocity)):
+        state.desired_velocity[:] = velocity[frame]
+        state.desired_facing[:] = facing[frame]
         block = step()
-        blocks.append(block)
+        blocks.append(_Shown(*(np.array(getattr(block, name)) for name in _Shown._fields)))
         playing.append((state.clip.copy(), state.clip_time.copy()))
         if block.jumps is not None:
             who = block.jumps.characters[block.jumps.from_clip >= 0]
             old = sampling.moments(library, clip_before[who], time_before[who]).nearest
             seams.append(Seams(np.full(len(who), frame), who, old))
         clip_before, time_before = playing[-1]
+    shown = _Shown(*(np.stack(part) for part in zip(*blocks, strict=True)))
     moments = sampling.moments(library, *(np.stack(part) for part in zip(*playing, strict=True)))
-    root = np.stack([block.root for block in blocks]).astype(np.float64)
-    pose = Pose(
-        root[..., :3],
-        root[..., 3:],
-        np.stack([block.hips for block in blocks]).astype(np.float64),
-        np.stack([block.rotations for block in blocks]).astype(np.float64),
-    )
     joined = Seams(*(np.concatenate(part) for part in zip(*seams, strict=True)))
+    start = 0
+    for asked in wanted:
+        stop = start + asked.facing.shape[1]
+        yield _stream(library, shown, moments, joined, asked, slice(start, stop))
+        start = stop
+
+
+class _Shown(NamedTuple):
+    """What is kept of a tick's block; float32."""
+
+    root: Floats
+    hips: Floats
+    rotations: Floats
+    foot_targets: Floats
+    simulated_root: Floats
+
+
+def _stream(
+    library: Library,
+    shown: _Shown,
+    moments: sampling.Moments,
+    seams: Seams,
+    wanted: Wanted,
+    who: slice,
+) -> Stream:
+    """Return the stream of some of the characters, in float64."""
+    mine = _Shown(*(part[:, who].astype(np.float64) for part in shown))
+    pose = Pose(mine.root[..., :3], mine.root[..., 3:], mine.hips, mine.rotations)
+    at = sampling.Moments(*(part[:, who] for part in moments))
+    inside = (seams.character >= who.start) & (seams.character < who.stop)
+    here = Seams(seams.frame[inside], seams.character[inside] - who.start, seams.from_row[inside])
     return Stream(
         pose,
         kinematics.forward_world(library.skeleton, pose)[0],
-        moments.nearest,
-        moments,
-        _since(joined, root.shape[:2]),
-        np.stack([block.foot_targets for block in blocks]).astype(np.float64),
-        np.stack([block.simulated_root for block in blocks]),
+        at.nearest,
+        at,
+        _since(here, mine.root.shape[:2]),
+        mine.foot_targets,
+        mine.simulated_root,
         wanted,
-        joined,
+        here,
     )
 
 

@@ -6,6 +6,7 @@ whole units with replacement (cluster bootstrap), since frames of one unit are n
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
@@ -92,9 +93,13 @@ class Percentile:
 
     def value(self, draw: Floats) -> Floats:
         """Return the pooled percentile, to half a bin; NaN where nothing was counted."""
-        summed = np.cumsum(draw @ self.counts, axis=-1)
+        used = np.flatnonzero(self.counts.any(axis=0))
+        if not len(used):
+            return np.full(len(draw), np.nan)
+        summed = np.cumsum(draw @ self.counts[:, used], axis=-1)
         whole = summed[..., -1:]
-        bin_of = (summed < 0.01 * self.percent * whole).sum(axis=-1)
+        last = len(used) - 1
+        bin_of = used[np.minimum((summed < 0.01 * self.percent * whole).sum(axis=-1), last)]
         middle = self.low + (bin_of + 0.5) * (self.high - self.low) / _BINS
         return np.where(whole[..., 0] > 0.0, middle, np.nan)
 
@@ -154,6 +159,7 @@ def ratio(above: Tally, below: Tally, seed: int = 0) -> tuple[float, float, floa
     return float(value), float(low), float(high)
 
 
+@lru_cache(maxsize=4)
 def _draws(units: int, seed: int) -> Floats:
     rng = np.random.default_rng(seed)
     return rng.multinomial(units, np.full(units, 1.0 / units), DRAWS).astype(np.float64)

@@ -8,7 +8,7 @@ import pytest
 
 from stridewire.motion.clip import Pose
 from stridewire_engine.evaluation.captured import TOES, Captured
-from stridewire_engine.evaluation.figures import Figures, captured_row, streamed_row
+from stridewire_engine.evaluation.figures import Figures, Judged
 from stridewire_engine.evaluation.streaming import Stream
 from stridewire_engine.evaluation.tally import interval
 
@@ -24,7 +24,8 @@ def value(figures: Figures, name: str) -> float:
 def judged(stream: Stream, captured: Captured) -> tuple[Figures, Figures]:
     """Return the figures of a stream and of the capture it played."""
     mask = np.ones(stream.since.shape, bool)
-    return streamed_row(stream, captured, mask), captured_row(stream, captured, mask)
+    found = Judged(stream, captured)
+    return found.streamed(mask), found.captured(mask)
 
 
 def test_the_capture_itself_measures_as_the_capture(captured: Captured, replay: Replay) -> None:

@@ -8,9 +8,9 @@ import pytest
 from stridewire._messages import CharacterSpec, GroundPose, Open, Step
 from stridewire_engine.evaluation.captured import Captured
 from stridewire_engine.evaluation.cell import Cell
-from stridewire_engine.evaluation.figures import streamed_row
-from stridewire_engine.evaluation.naive import naive_stream
-from stridewire_engine.evaluation.streaming import Stream, perturbed, stream, wanted_of
+from stridewire_engine.evaluation.figures import Judged
+from stridewire_engine.evaluation.naive import naive_streams
+from stridewire_engine.evaluation.streaming import Stream, perturbed, streams, wanted_of
 from stridewire_engine.evaluation.tally import interval
 from stridewire_engine.library import Library
 from stridewire_engine.matching.search import Matcher
@@ -27,7 +27,7 @@ def matcher(small_library: Library) -> Matcher:
 
 def made(library: Library, matcher: Matcher, cell: Cell) -> Stream:
     """Return the stream of a cell."""
-    return stream(library, matcher, cell, wanted_of(cell))
+    return next(streams(library, matcher, [cell], [wanted_of(cell)]))
 
 
 def test_what_is_measured_is_what_is_served(small_library: Library, matcher: Matcher) -> None:
@@ -57,6 +57,19 @@ def test_transitions_come_when_forced(small_library: Library, matcher: Matcher) 
     assert forced.since[60:].max() <= 20
 
 
+def test_cells_that_share_their_ticks_do_not_meet(
+    small_library: Library, matcher: Matcher
+) -> None:
+    """Two scripts and two stitchers in one tick show what each shows alone, to 1e-5."""
+    cells = [CELL, replace(CELL, script="stroll", stitch="stance", foot_lock=False)]
+    both = streams(small_library, matcher, cells, [wanted_of(cell) for cell in cells])
+    for cell, together in zip(cells, both, strict=True):
+        alone = made(small_library, matcher, cell)
+        assert np.array_equal(together.rows, alone.rows)
+        assert np.array_equal(together.seams.frame, alone.seams.frame)
+        assert np.allclose(together.positions, alone.positions, atol=1e-5)
+
+
 def test_a_lower_rank_is_a_worse_match(small_library: Library, matcher: Matcher) -> None:
     """The fortieth match is another one than the best, and the stream stays whole."""
     cell = replace(CELL, forced_interval_frames=20)
@@ -82,9 +95,10 @@ def test_the_naive_baseline_slides_and_locks_nothing(
     """Without foot work its planted toes slide at least twice as fast as those of stance."""
     captured, every = Captured(small_library), np.ones((240, 2), bool)
     ours = made(small_library, matcher, replace(CELL, stitch="stance"))
-    naive = naive_stream(small_library, matcher, CELL, wanted_of(CELL))
+    naive = next(naive_streams(small_library, matcher, [CELL], [wanted_of(CELL)]))
     assert np.isnan(naive.foot_targets).all()
     sliding = [
-        interval(streamed_row(one, captured, every)["sliding_c_cm_s"])[0] for one in (ours, naive)
+        interval(Judged(one, captured).streamed(every)["sliding_c_cm_s"])[0]
+        for one in (ours, naive)
     ]
     assert sliding[1] > 2.0 * sliding[0]

@@ -8,8 +8,8 @@ import pytest
 from stridewire._messages import CharacterSpec, GroundPose, Open, Step
 from stridewire_engine.evaluation.captured import Captured
 from stridewire_engine.evaluation.cell import Cell
-from stridewire_engine.evaluation.figures import Figures, streamed_row
-from stridewire_engine.evaluation.streaming import stream, wanted_of
+from stridewire_engine.evaluation.figures import Figures, Judged
+from stridewire_engine.evaluation.streaming import streams, wanted_of
 from stridewire_engine.evaluation.tally import interval
 from stridewire_engine.library import Library
 from stridewire_engine.matching.search import Matcher
@@ -26,8 +26,9 @@ def judged(small_library: Library) -> dict[str, Figures]:
     captured, matcher, asked = Captured(small_library), Matcher(small_library), wanted_of(CELL)
     out = {}
     for name in ("spring", "stance"):
-        made = stream(small_library, matcher, replace(CELL, stitch=name), asked)
-        out[name] = streamed_row(made, captured, np.ones(made.since.shape, bool))
+        cell = replace(CELL, stitch=name)
+        made = next(streams(small_library, matcher, [cell], [asked]))
+        out[name] = Judged(made, captured).streamed(np.ones(made.since.shape, bool))
     return out
 
 
