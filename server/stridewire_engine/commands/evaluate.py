@@ -4,6 +4,7 @@ import click
 
 from stridewire_engine.commands.evaluate_blend import blend
 from stridewire_engine.commands.evaluate_stream import stream
+from stridewire_engine.commands.evaluate_tune import tune
 
 
 @click.group()
@@ -13,3 +14,4 @@ def evaluate() -> None:
 
 evaluate.add_command(blend)
 evaluate.add_command(stream)
+evaluate.add_command(tune)

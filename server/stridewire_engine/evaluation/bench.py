@@ -1,20 +1,17 @@
 """The bench: measures cells of a library, several at once, and keeps what it measured."""
 
 import functools
-import hashlib
 import json
 import multiprocessing
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import replace
 from pathlib import Path
 
-import stridewire.motion
-import stridewire_engine
 from stridewire_engine.evaluation import tally
 from stridewire_engine.evaluation.captured import Captured
 from stridewire_engine.evaluation.cell import Cell
+from stridewire_engine.evaluation.code import code_hash
 from stridewire_engine.evaluation.figures import Blocks, Figures, Judged
 from stridewire_engine.evaluation.naive import naive_streams
 from stridewire_engine.evaluation.streaming import PER_SEED, Stream, Wanted, streams, wanted_of
@@ -47,9 +44,11 @@ class Bench:
 
     def run_all(self, cells: Sequence[Cell]) -> Iterator[Stream]:
         """Make the motion of cells that share their ticks."""
-        scripts = {replace(cell, stitch="", foot_lock=True) for cell in cells}
-        asked = {cell: wanted_of(cell) for cell in scripts}
-        return self.run_under(cells, [asked[replace(c, stitch="", foot_lock=True)] for c in cells])
+        asked: dict[tuple[str, tuple[int, ...]], Wanted] = {}
+        for cell in cells:
+            if (cell.script, cell.seeds) not in asked:
+                asked[cell.script, cell.seeds] = wanted_of(cell)
+        return self.run_under(cells, [asked[cell.script, cell.seeds] for cell in cells])
 
     def run_under(self, cells: Sequence[Cell], wanted: Sequence[Wanted]) -> Iterator[Stream]:
         """Make the motion of cells under given controls."""
@@ -85,7 +84,7 @@ def measure_cells(
         cache: Folder of measurements.
     """
     library_hash = Library.open(path).manifest.content_hash
-    code = code_hash()
+    code = code_hash(Path(__file__))
     files = {cell: cache / f"{cell.key(library_hash, code)}.json" for cell in cells}
     for cell, file in files.items():
         if file.exists():
@@ -118,16 +117,6 @@ def _batches(cells: Sequence[Cell]) -> Iterator[list[Cell]]:
             batch.append(cell)
             count += characters
         yield batch
-
-
-def code_hash() -> str:
-    """Hash all code of the engine and the client: whatever changes in it, is measured again."""
-    digest = hashlib.sha256()
-    client = Path(stridewire.motion.__file__).parents[1]
-    for folder in (client, Path(stridewire_engine.__file__).parent):
-        for source in sorted(folder.rglob("*.py")):
-            digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 def default_cache() -> Path:

@@ -37,11 +37,13 @@ class Cell:
     label_shift_frames: int = 0
     """Contact labels come so many frames late; negative: early."""
     settings: TickSettings = _DEFAULTS
+    weights: tuple[tuple[str, float], ...] = ()
+    """Of channels; the others have the schema's."""
 
     @property
     def tick(self) -> "Cell":
         """All that the tick itself depends on: cells where it is equal can share their ticks."""
-        return replace(self, script="", stitch="", foot_lock=True, seeds=())
+        return replace(self, script="", stitch="", foot_lock=True, seeds=(), weights=())
 
     def key(self, library_hash: str, code_hash: str) -> str:
         """Return a name for the cache that changes with anything the result depends on."""

@@ -7,6 +7,7 @@ from typing import Any
 from stridewire.drawing import contact_sheet
 from stridewire_engine.evaluation.bench import Bench
 from stridewire_engine.evaluation.cell import Cell
+from stridewire_engine.evaluation.tuning import Trial
 
 SHEETS = {
     "walk": "stroll",
@@ -58,3 +59,24 @@ def draw_table(table: Sequence[dict[str, Any]], path: Path) -> None:
         axes.set_xticks(range(len(bars)), labels, rotation=70, ha="right", fontsize=6)
         axes.set_title(name, fontsize=9)
     figure.savefig(path, dpi=110)
+
+
+def draw_front(trials: Sequence[Trial], best: Sequence[Trial], path: Path) -> None:
+    """Draw a search: flaws over following error, the front as a line, where it began as a cross."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8, 6), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots()
+    axes.scatter(*_objectives(trials), s=14, color="#a5c4e5", label="tried")
+    axes.plot(*_objectives(best), "o-", color="#3b6ea5", ms=5, label="front")
+    axes.plot(*_objectives(trials[:1]), "X", color="#c0504d", ms=11, label="begun with")
+    axes.set_xlabel("following error, m (response)")
+    axes.set_ylabel("flaws (quality)")
+    axes.legend()
+    figure.savefig(path, dpi=110)
+
+
+def _objectives(trials: Sequence[Trial]) -> tuple[list[float], list[float]]:
+    return [trial.following_error_m for trial in trials], [trial.flaws for trial in trials]

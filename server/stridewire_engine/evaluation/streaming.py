@@ -133,7 +133,8 @@ def begin(matcher: Matcher, cell: Cell, wanted: Wanted, settings: TickSettings) 
     """Return characters side by side that look where they are to go; searches are staggered."""
     count = wanted.velocity.shape[1]
     state = Characters.allocate(count, len(matcher.library.skeleton), len(matcher.schema.channels))
-    state.weights[...] = matcher.schema.weights
+    given = dict(cell.weights)
+    state.weights[...] = [given.get(c.name, c.weight) for c in matcher.schema.channels]
     lots = [np.random.default_rng(seed).random(PER_SEED) for seed in cell.seeds]
     state.stagger[:] = np.concatenate(lots)[:count]
     state.until_search[:] = state.stagger * settings.search_interval
@@ -207,7 +208,7 @@ def _stream(
     """Return the stream of some of the characters, in float64."""
     mine = _Shown(*(part[:, who].astype(np.float64) for part in shown))
     pose = Pose(mine.root[..., :3], mine.root[..., 3:], mine.hips, mine.rotations)
-    at = sampling.Moments(*(part[:, who] for part in moments))
+    at = sampling.Moments(moments.rows[:, who], moments.weight[:, who])
     inside = (seams.character >= who.start) & (seams.character < who.stop)
     here = Seams(seams.frame[inside], seams.character[inside] - who.start, seams.from_row[inside])
     return Stream(

@@ -71,7 +71,8 @@ def _row(
     for old, new in _JERKS.items():
         figures[new] = _ratio(figures.pop(old), captured[old])
     facts = asdict(way)
-    del facts["settings"], facts["seconds"], facts["script"]
+    for name in ("settings", "weights", "seconds", "script"):
+        del facts[name]
     facts["seeds"] = f"{way.seeds[0]}-{way.seeds[-1]}"
     return {"library": library, "script": script, **facts, "block": block, **_numbers(figures)}
 

@@ -138,14 +138,18 @@ def pool(tallies: Sequence[Tally]) -> Tally:
     return Percentile(counts, first.low, first.high, first.percent)
 
 
+def value(tally: Tally) -> float:
+    """Return the figure alone."""
+    return float(tally.value(np.ones((1, tally.units)))[0])
+
+
 def interval(tally: Tally, seed: int = 0) -> tuple[float, float, float]:
     """Return the figure and its 95 % bootstrap interval over units."""
-    value = float(tally.value(np.ones((1, tally.units)))[0])
     drawn = tally.value(_draws(tally.units, seed))
     if np.isnan(drawn).all():
-        return value, np.nan, np.nan
+        return value(tally), np.nan, np.nan
     low, high = np.nanpercentile(drawn, (2.5, 97.5))
-    return value, float(low), float(high)
+    return value(tally), float(low), float(high)
 
 
 def ratio(above: Tally, below: Tally, seed: int = 0) -> tuple[float, float, float]:

@@ -11,7 +11,7 @@ from stridewire_engine.evaluation.critic import (
     stream_features,
 )
 from stridewire_engine.evaluation.streaming import Stream
-from stridewire_engine.evaluation.tuning import Trial, front
+from stridewire_engine.evaluation.tuning import Candidate, Trial, front
 from stridewire_engine.runtime import TickSettings
 
 pytest.importorskip("sklearn")
@@ -58,5 +58,7 @@ def test_windows_lie_around_seams(replay: object) -> None:
 
 def test_the_front_holds_whom_nobody_beats() -> None:
     """Of four trials one is beaten in both objectives and is not on the front."""
-    trials = [Trial(TickSettings(), f, e, {}) for f, e in ((1, 4), (2, 2), (4, 1), (3, 3))]
+    trials = [
+        Trial(Candidate(TickSettings()), f, e, {}) for f, e in ((1, 4), (2, 2), (4, 1), (3, 3))
+    ]
     assert [(t.flaws, t.following_error_m) for t in front(trials)] == [(4, 1), (2, 2), (1, 4)]

@@ -57,9 +57,7 @@ def test_transitions_come_when_forced(small_library: Library, matcher: Matcher) 
     assert forced.since[60:].max() <= 20
 
 
-def test_cells_that_share_their_ticks_do_not_meet(
-    small_library: Library, matcher: Matcher
-) -> None:
+def test_cells_that_share_their_ticks_do_not_meet(small_library: Library, matcher: Matcher) -> None:
     """Two scripts and two stitchers in one tick show what each shows alone, to 1e-5."""
     cells = [CELL, replace(CELL, script="stroll", stitch="stance", foot_lock=False)]
     both = streams(small_library, matcher, cells, [wanted_of(cell) for cell in cells])
