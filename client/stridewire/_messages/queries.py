@@ -12,10 +12,15 @@ from stridewire.motion.clip import Pose
 from stridewire.motion.skeleton import Skeleton
 
 AnswerT = TypeVar("AnswerT")
+PartT = TypeVar("PartT")
 
 
 class Query(Generic[AnswerT]):
     """A question that a runtime answers with one object of a type."""
+
+
+class PartsQuery(Generic[PartT]):
+    """A question that a runtime answers with parts of a type, one after the other."""
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,19 @@ def read_bvh(path: Path | str) -> SourceMotion:
         OSError: If it cannot be opened.
     """
     path = Path(path)
-    text = _text(path)
+    return parse_bvh(path, _text(path))
+
+
+def parse_bvh(path: Path, text: str) -> SourceMotion:
+    """Read the text of a BVH file.
+
+    Args:
+        path: What the file is called in messages.
+        text: Its content.
+
+    Raises:
+        FormatError: If it is no BVH, is malformed or holds numbers that are not finite.
+    """
     split = _MOTION.search(text)
     if split is None:
         raise FormatError(path, "no MOTION section; expected a BVH file, export it again")

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from stridewire.formats.bvh import parse_bvh
 from stridewire.formats.reading import READERS, read_motion
 from stridewire.formats.source_motion import SourceMotion
 from stridewire.motion.clip import Clip
 from stridewire_engine.building.cleaning import clean, find_loop
-from stridewire_engine.building.onto_reference import RefusedError, bring
+from stridewire_engine.building.onto_reference import SHORTEST_S, RefusedError, bring
 from stridewire_engine.building.profiles import Profile, shipped_profiles
 from stridewire_engine.building.sidecars import Sidecar, Sidecars, Splits
 from stridewire_engine.building.tagging import tag
@@ -120,6 +121,7 @@ def import_file(
     frame_rate: float | None = None,
     metres_per_unit: float | None = None,
     sidecar: Sidecar | None = None,
+    shortest_s: float = SHORTEST_S,
 ) -> Outcome:
     """Import one file.
 
@@ -130,6 +132,7 @@ def import_file(
         frame_rate: Frames per second, instead of what the file or its index says.
         metres_per_unit: Where it cannot be told or the figure is no human's size.
         sidecar: What an index says; by default looked up beside the file.
+        shortest_s: Seconds that it has to last at least.
 
     Raises:
         ValueError: If it cannot be read or is not a human's motion.
@@ -137,8 +140,38 @@ def import_file(
     """
     sidecar = Sidecars().of(path) if sidecar is None else sidecar
     source = read_motion(path)
+    return _import_motion(source, name, profiles, frame_rate, metres_per_unit, sidecar, shortest_s)
+
+
+def import_bvh_text(text: str, name: str, shortest_s: float = SHORTEST_S) -> Clip:
+    """Import the text of a BVH file.
+
+    Args:
+        text: The file's content.
+        name: Of the clip, and of the file in messages.
+        shortest_s: Seconds that it has to last at least.
+
+    Raises:
+        ValueError: If it cannot be read or is not a human's motion.
+    """
+    source = parse_bvh(Path(name), text)
+    clip = _import_motion(source, name, (), None, None, Sidecar(), shortest_s).clip
+    assert clip is not None
+    return clip
+
+
+def _import_motion(
+    source: SourceMotion,
+    name: str | None,
+    profiles: Sequence[Profile],
+    frame_rate: float | None,
+    metres_per_unit: float | None,
+    sidecar: Sidecar,
+    shortest_s: float,
+) -> Outcome:
+    path = source.path
     rate, timed = _frame_rate(source, frame_rate, sidecar)
-    brought = bring(source, rate, profiles or shipped_profiles(), metres_per_unit)
+    brought = bring(source, rate, profiles or shipped_profiles(), metres_per_unit, shortest_s)
     motion = brought.motion
     floor = 0.0 if motion.unchanged else None
     clip = clean(name or path.stem, motion.hips, motion.rotations, rate, path.name, floor)

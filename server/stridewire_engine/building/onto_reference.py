@@ -18,7 +18,8 @@ from stridewire_engine.building.retarget import Retargeted, fits, retarget
 from stridewire_engine.building.unit_finding import find_unit
 from stridewire_engine.rigs.joint_mapping import map_joints
 
-_SHORTEST_S = 0.25
+SHORTEST_S = 0.25
+"""Shorter files are refused where nothing else is asked for; seconds."""
 
 
 class RefusedError(ValueError):
@@ -43,6 +44,7 @@ def bring(
     frame_rate: float,
     profiles: Sequence[Profile],
     metres_per_unit: float | None = None,
+    shortest_s: float = SHORTEST_S,
 ) -> Brought:
     """Cut what lies before the motion, mend it, map its joints, retarget it and find its unit.
 
@@ -51,6 +53,7 @@ def bring(
         frame_rate: Frames per second, the true one.
         profiles: Which may map its joints.
         metres_per_unit: Of the file, by a person's word.
+        shortest_s: Seconds that it has to last at least.
 
     Raises:
         ValueError: If it is too short or no human's motion; the message names the file.
@@ -59,10 +62,10 @@ def bring(
     notes = [f"{cut} frame(s) before the motion begins were cut"] if cut else []
     source, mended = mend_spikes(source.after(cut), frame_rate)
     notes += [*mended, *gaps(source, frame_rate)]
-    if len(source) < _SHORTEST_S * frame_rate:
+    if len(source) < shortest_s * frame_rate:
         raise RefusedError(
             f"{source.path}: {len(source)} frames at {frame_rate:g} per second; expected at least "
-            f"{_SHORTEST_S:g} s"
+            f"{shortest_s:g} s"
         )
     profile = find_profile(source, profiles)
     motion = retarget(source, profile, frame_rate)

@@ -1,7 +1,6 @@
 """`stridewire blend`: postures between two moments of motion files."""
 
 import json
-from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,10 +11,11 @@ from stridewire._messages import BlendMethod
 from stridewire.formats.writing import find_writer, write_clip
 from stridewire.motion.array_types import Floats
 from stridewire.motion.clip import Clip, Pose
-from stridewire.motion.skeleton import REFERENCE, SkeletonError
+from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.blending import Blended, Pair
 from stridewire_engine.blending import blend as blend_pairs
 from stridewire_engine.building.importing import import_file
+from stridewire_engine.commands.joint_shares import joint_shares
 from stridewire_engine.networks.blend import blend_network
 
 _METHODS = {method.name.lower(): method for method in BlendMethod}
@@ -135,24 +135,8 @@ def _weights(text: str) -> Floats:
 
 
 def _shares(mask: tuple[str, ...]) -> Floats:
-    shares = np.ones(len(REFERENCE))
-    names = [text.partition("=")[0] for text in mask]
-    for name, count in Counter(names).items():
-        if count > 1:
-            raise click.BadParameter(f"{name} is given {count} times", param_hint="--mask")
-    for text in mask:
-        name, _, share = text.partition("=")
-        try:
-            shares[REFERENCE.index(name)] = value = float(share)
-        except SkeletonError as error:
-            raise click.BadParameter(str(error), param_hint="--mask") from error
-        except ValueError:
-            value = np.nan
-        if not 0.0 <= value <= 1.0:
-            raise click.BadParameter(
-                f"{text!r}; expected JOINT=SHARE, a share from 0 to 1", param_hint="--mask"
-            )
-    return shares
+    shares = joint_shares(mask)
+    return np.array([shares.get(name, 1.0) for name in REFERENCE.names])
 
 
 def _clip(name: str, blended: Blended) -> Clip:
