@@ -32,6 +32,19 @@ def serve(*libraries: str | os.PathLike[str]) -> Iterator[str]:
         UnavailableError: If the server ended before it was ready; it has said why on standard
             error.
     """
+    with server_process(*libraries) as (address, _):
+        yield address
+
+
+@contextmanager
+def server_process(
+    *libraries: str | os.PathLike[str],
+) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
+    """Run a server as `serve` does; gives its address and its process, to be watched.
+
+    Raises:
+        UnavailableError: As `serve`.
+    """
     command = [sys.executable, "-m", "stridewire", "serve", "--address", "127.0.0.1:0", "--json"]
     for library in libraries:
         command += ["--library", os.fspath(library)]
@@ -43,7 +56,7 @@ def serve(*libraries: str | os.PathLike[str]) -> Iterator[str]:
                 raise UnavailableError(
                     f"the server ended with {server.wait()} before it was ready; see above"
                 )
-            yield json.loads(ready)["address"]
+            yield json.loads(ready)["address"], server
         finally:
             server.terminate()
             try:

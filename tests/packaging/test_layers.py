@@ -67,7 +67,7 @@ THIRD_PARTY = {
         "websockets",
     },
     "stridewire_models": {"click", "numpy", "onnx", "onnxruntime", "scipy", "torch"},
-    "stridewire_loadtest": {"click", "grpc", "hdrh", "numpy"},
+    "stridewire_loadtest": {"click", "grpc", "hdrh", "matplotlib", "numpy", "psutil"},
 }
 
 OWN = {
