@@ -7,6 +7,7 @@ a show that was interrupted goes on where it stopped; `--fresh` begins anew.
     def search() -> Iterator[Point]:
         wrong = ...
         yield Point("1,000 searches equal brute force", f"{wrong} differ", "0", wrong == 0)
+        yield Point("the index", f"{bytes / 1e6:.1f} MB")  # no bar: for information
 
     if __name__ == "__main__":
         sys.exit(show("spine", [search]))
@@ -34,14 +35,17 @@ class Point:
     """The claim in a few words."""
     figure: str
     """What was measured, with its unit."""
-    bar: str
-    """What was asked for, as it was asked."""
-    passed: bool
-    """Whether the figure is within the bar."""
+    bar: str = ""
+    """What was asked for, as it was asked; empty where nothing was."""
+    passed: bool | None = None
+    """Whether the figure is within the bar; None without one: it is told for information."""
 
     def __post_init__(self) -> None:
-        # comparisons of numpy give a type of their own, which JSON does not know
-        object.__setattr__(self, "passed", bool(self.passed))
+        if bool(self.bar) != (self.passed is not None):
+            raise ValueError(f"{self.what!r}: a bar is passed or missed, and nothing else is")
+        if self.passed is not None:
+            # comparisons of numpy give a type of their own, which JSON does not know
+            object.__setattr__(self, "passed", bool(self.passed))
 
 
 Stage = Callable[[], Iterator[Point]]
@@ -56,7 +60,7 @@ def show(name: str, stages: Sequence[Stage], arguments: Sequence[str] | None = N
         arguments: Of the command line: `--fresh`, `--stage NAME`, `--json`.
 
     Returns:
-        The exit status: 0 where every point passed, 1 where one missed.
+        The exit status: 0 where every point that has a bar passed, 1 where one missed.
     """
     options = _options(name, stages, arguments)
     done = _Finished(ROOT / "build" / "show" / f"{name}.json", options.fresh)
@@ -70,12 +74,15 @@ def show(name: str, stages: Sequence[Stage], arguments: Sequence[str] | None = N
             rows.append({"stage": stage.__name__, "kept": kept is not None, **asdict(point)})
             if not options.json:
                 print(_line(stage.__name__, point, kept is not None), flush=True)
-    missed = [row for row in rows if not row["passed"]]
+    told = [row for row in rows if row["passed"] is None]
+    missed = [row for row in rows if row["passed"] is False]
     if options.json:
         print(json.dumps({"settings": {"name": name, "state": done.state}, "rows": rows}))
     else:
-        print(f"\n{len(rows) - len(missed)} of {len(rows)} points shown, {len(missed)} missed")
-    return 1 if missed or not rows else 0
+        asked = len(rows) - len(told)
+        beside = f", {len(told)} for information" if told else ""
+        print(f"\n{asked - len(missed)} of {asked} points shown, {len(missed)} missed{beside}")
+    return 1 if missed or len(told) == len(rows) else 0
 
 
 class _Finished:
@@ -118,9 +125,10 @@ def _run(stage: Stage, done: _Finished) -> Iterator[Point]:
 
 
 def _line(stage: str, point: Point, kept: bool) -> str:
-    verdict = "pass" if point.passed else "MISS"
+    verdict = {True: "pass", False: "MISS", None: "info"}[point.passed]
+    bar = f"  [{point.bar}]" if point.bar else ""
     note = "  (kept)" if kept else ""
-    return f"{verdict}  {stage:<12} {point.what}: {point.figure}  [{point.bar}]{note}"
+    return f"{verdict}  {stage:<12} {point.what}: {point.figure}{bar}{note}"
 
 
 def _options(

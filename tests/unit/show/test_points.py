@@ -53,6 +53,23 @@ def test_nothing_shown_is_no_pass() -> None:
     assert show("nothing", [lambda: iter(())], []) == 1
 
 
+def told() -> Iterator[Point]:
+    """Tell a figure of which nothing is asked."""
+    yield Point("two and three", "5")
+
+
+def test_without_a_bar_nothing_is_passed(capsys: pytest.CaptureFixture[str]) -> None:
+    """A figure without a bar is information: it counts neither as shown nor as missed."""
+    assert show("sums", [good, told], []) == 0
+    assert show("told", [told], []) == 1
+    printed = capsys.readouterr().out
+    assert "info  told         two and three: 5\n" in printed
+    assert "1 of 1 points shown, 0 missed, 1 for information" in printed
+    for bar, passed in (("", True), ("5", None)):
+        with pytest.raises(ValueError, match="two and three"):
+            Point("two and three", "5", bar, passed)
+
+
 def test_finished_stages_are_kept_until_fresh_or_changed(monkeypatch: pytest.MonkeyPatch) -> None:
     """A second run uses what is kept, misses included; a changed checkout begins anew."""
     for _ in range(2):
