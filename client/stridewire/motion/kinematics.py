@@ -26,11 +26,15 @@ def forward(
     positions[..., 0, :] = hips
     turned[..., 0, :] = rotations[..., 0, :]
     for joints, parents in skeleton.levels:
-        parent = turned[..., parents, :]
-        turned[..., joints, :] = quaternion.multiply(parent, rotations[..., joints, :])
-        positions[..., joints, :] = positions[..., parents, :] + quaternion.rotate(
-            parent, np.broadcast_to(offsets[joints], (*parent.shape[:-1], 3))
+        turned[..., joints, :] = quaternion.multiply(
+            turned[..., parents, :], rotations[..., joints, :]
         )
+    parents = np.array(skeleton.parents[1:], np.intp)
+    bones = quaternion.rotate(
+        turned[..., parents, :], np.broadcast_to(offsets[1:], positions[..., 1:, :].shape)
+    )
+    for joints, parents in skeleton.levels:
+        positions[..., joints, :] = positions[..., parents, :] + bones[..., joints - 1, :]
     return positions, turned
 
 

@@ -33,9 +33,12 @@ def keep_feet(between: Postures, start: Postures, end: Postures, weights: Floats
         end: `(P,)`.
         weights: `(P, J)`; legs whose joints do not share the hips' weight are left alone.
     """
-    positions, turned = kinematics.forward(REFERENCE, between.hips, between.rotations)
-    first = kinematics.forward(REFERENCE, start.hips, start.rotations)
-    last = kinematics.forward(REFERENCE, end.hips, end.rotations)
+    three = kinematics.forward(
+        REFERENCE,
+        np.stack([between.hips, start.hips, end.hips]),
+        np.stack([between.rotations, start.rotations, end.rotations]),
+    )
+    (positions, turned), first, last = zip(*three, strict=True)
     hip, knee, ankle, toe = (_LEGS[:, i] for i in range(4))
     stands = _stands(first[0][:, toe], last[0][:, toe])[..., None]
     share = weights[:, :1, None]

@@ -15,7 +15,13 @@ JOINTS = len(REFERENCE)
 POSTURE_SIZE = 3 + 6 * JOINTS
 """Numbers that the paper writes a posture as: 135."""
 PAPER_INPUTS = 2 * POSTURE_SIZE + 1
-INPUTS = 2 * (POSTURE_SIZE + 3 * (JOINTS - 1)) + 2
+_SIDE = POSTURE_SIZE + 3 * (JOINTS - 1)
+INPUTS = 2 * _SIDE + 2
+START_PLACES = slice(POSTURE_SIZE, _SIDE)
+"""Columns of `inputs` with the places of the start's joints below the hips."""
+END_PLACES = slice(_SIDE + POSTURE_SIZE, 2 * _SIDE)
+LOG_TIME = 2 * _SIDE
+"""Column with the logarithm of the duration; 0, as of a second, where it is unknown."""
 LONGEST_S, SHORTEST_S = 1.0, 0.1
 """Durations of pairs that networks are trained on; seconds."""
 
@@ -76,16 +82,12 @@ def inputs(start: Postures, end: Postures, duration: Floats) -> Floats:
     """
     known = duration > 0.0
     time = np.log(np.clip(np.where(known, duration, LONGEST_S), SHORTEST_S, LONGEST_S))
-    sides = [
-        part
-        for side in (start, end)
-        for part in (write_postures(side), _flat(side.joints()[..., 1:, :]))
-    ]
-    return np.concatenate([*sides, np.stack([time, known], axis=-1)], axis=-1).astype(np.float32)
-
-
-def _flat(joints: Floats) -> Floats:
-    return joints.reshape(*joints.shape[:-2], -1)
+    # one pass over both: of few pairs the passes are what takes the time
+    both = Postures(np.stack([start.hips, end.hips]), np.stack([start.rotations, end.rotations]))
+    joints = both.joints()[..., 1:, :]
+    sides = np.concatenate([write_postures(both), joints.reshape(*joints.shape[:-2], -1)], axis=-1)
+    told = np.stack([time, known], axis=-1)
+    return np.concatenate([*sides, told], axis=-1).astype(np.float32)
 
 
 def _length(v: Floats) -> Floats:
