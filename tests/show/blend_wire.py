@@ -54,9 +54,7 @@ def unary() -> Iterator[Point]:
             client.blend(ClipTime(CLIP, at), ClipTime(CLIP, at + 0.5), (0.0, 0.25, 0.5, 0.75, 1.0))
             times.append(time.perf_counter() - began)
     p50, p99 = 1e3 * np.percentile(times, (50, 99))
-    yield Point(
-        "a unary Blend of 5 postures over gRPC", f"p50 {p50:.2f} ms, p99 {p99:.2f} ms", "told", True
-    )
+    yield Point("a unary Blend of 5 postures over gRPC", f"p50 {p50:.2f} ms, p99 {p99:.2f} ms")
 
 
 def bad_input() -> Iterator[Point]:

@@ -11,20 +11,17 @@ import onnx
 import torch
 
 from stridewire.motion.array_types import Floats
+from stridewire_engine.evaluation.training_runs import RunError, configuration
 from stridewire_engine.networks.blend import features
 from stridewire_engine.networks.blend.network import facts
 from stridewire_engine.networks.blend.pairs import Frames
 from stridewire_models.blend.networks import SHAPES, Correction, Paper, new_network
-from stridewire_models.blend.training import BEST, CONFIGURATION
+from stridewire_models.blend.training import BEST
 
 _OPSET = 17
 FURTHEST = 2.0
 """Distance from the training data beyond which the network is not used: it gained nothing there."""
 _PAIRS = 20_000
-
-
-class RunError(ValueError):
-    """A run's folder holds nothing to export; the message says what to do."""
 
 
 def read_run(folder: Path) -> tuple[Correction | Paper, Mapping[str, object]]:
@@ -33,13 +30,9 @@ def read_run(folder: Path) -> tuple[Correction | Paper, Mapping[str, object]]:
     Raises:
         RunError: If it has none.
     """
-    configuration, best = folder / CONFIGURATION, folder / BEST
-    if not configuration.is_file() or not best.is_file():
-        raise RunError(
-            f"{folder} holds no {CONFIGURATION} and {BEST}; give the folder of "
-            "`stridewire train blend --out`"
-        )
-    told: Mapping[str, object] = json.loads(configuration.read_text())
+    told, best = configuration(folder), folder / BEST
+    if not best.is_file():
+        raise RunError(f"{folder} holds no {BEST}: its training has not come to a first look yet")
     network = new_network(str(told["variant"]))
     network.load_state_dict(torch.load(best))
     network.eval()

@@ -15,6 +15,8 @@ from stridewire_models.blend.capsules import penetration
 from stridewire_models.blend.networks import Correction, Paper
 from stridewire_models.blend.rotations import forward, from_scaled_axis, multiply
 
+_TURN_WEIGHT = 4.0
+"""Hands, toes and the head move no other joint: only this holds their turns."""
 _POSITION_WEIGHT = 10.0
 _END_WEIGHT = 3.0
 _COLLISION_WEIGHT = 20.0
@@ -86,7 +88,7 @@ def _distance(hips: Tensor, rotations: Tensor, truth: Postures) -> Tensor:
         - penetration(true_joints[:, :half], true_turns[:, :half])
     )
     return (
-        turned
+        _TURN_WEIGHT * turned
         + _POSITION_WEIGHT
         * (torch.mean(away) + _END_WEIGHT * torch.mean(away[..., _END_JOINTS, :]))
         + _COLLISION_WEIGHT * torch.mean(deeper.sum(dim=-1))

@@ -9,7 +9,15 @@ from torch import Tensor, nn
 
 from stridewire.motion.array_types import Floats
 from stridewire_engine.networks.blend.correction import CHANNELS, ORDER
-from stridewire_engine.networks.blend.features import INPUTS, PAPER_INPUTS, POSTURE_SIZE
+from stridewire_engine.networks.blend.features import (
+    END_PLACES,
+    INPUTS,
+    JOINTS,
+    LOG_TIME,
+    PAPER_INPUTS,
+    POSTURE_SIZE,
+    START_PLACES,
+)
 
 WIDTH = 512
 _LAYERS = 3
@@ -106,15 +114,26 @@ class Correction(Blend):
         nn.init.zeros_(self.last.weight)
         nn.init.zeros_(self.last.bias)
 
+    def size(self, x: Tensor) -> Tensor:
+        """Return how large corrections of pairs `(N, INPUTS)` are apt to be, `(N, 1)`.
+
+        The root of the way of the joints times the duration: in proportion to it grows what linear
+        blends of training data lack, over ways of 1 cm to 1 m and durations of 0.1 to 1 s. Postures
+        that are one are blended to that one.
+        """
+        ways = (x[:, END_PLACES] - x[:, START_PLACES]).reshape(-1, JOINTS - 1, 3)
+        way = torch.sqrt(torch.sum(ways * ways, dim=-1)).mean(dim=-1, keepdim=True)
+        return torch.sqrt(way * torch.exp(x[:, LOG_TIME : LOG_TIME + 1]))
+
     def bound(self, bounds: Floats, scale: Floats) -> None:
-        """Set the largest and the usual correction of each channel `(CHANNELS,)`."""
+        """Set the largest correction of each channel and the usual one at size 1 `(CHANNELS,)`."""
         self.bounds.copy_(torch.tensor(bounds))
         self.scale.copy_(torch.tensor(np.tile(scale, ORDER)))
 
     def forward(self, x: Tensor) -> tuple[Tensor, Tensor]:
         """Return coefficients and distances `(N,)` of inputs `(N, 398)`."""
         flat, distance = super().forward(x)
-        return flat.reshape(-1, ORDER, CHANNELS), distance
+        return (self.size(x) * flat).reshape(-1, ORDER, CHANNELS), distance
 
 
 class Paper(Blend):

@@ -52,13 +52,14 @@ def forward(skeleton: Skeleton, hips: Tensor, rotations: Tensor) -> tuple[Tensor
     """
     offsets = torch.tensor(skeleton.offsets, dtype=rotations.dtype)
     positions, turned = [hips.unsqueeze(-2)], [rotations[..., :1, :]]
-    order = [0]
+    order, above = [0], [0]
     for joints, parents in skeleton.levels:
-        at = [order.index(parent) for parent in parents]
-        all_turned, all_positions = torch.cat(turned, dim=-2), torch.cat(positions, dim=-2)
-        parent_turn = all_turned[..., at, :]
+        # parents are all of the level before
+        at = [above.index(parent) for parent in parents]
+        parent_turn = turned[-1][..., at, :]
+        positions.append(positions[-1][..., at, :] + rotate(parent_turn, offsets[joints]))
         turned.append(multiply(parent_turn, rotations[..., joints, :]))
-        positions.append(all_positions[..., at, :] + rotate(parent_turn, offsets[joints]))
-        order += joints.tolist()
+        above = joints.tolist()
+        order += above
     back = [order.index(joint) for joint in range(len(skeleton))]
     return torch.cat(positions, dim=-2)[..., back, :], torch.cat(turned, dim=-2)[..., back, :]

@@ -2,7 +2,7 @@
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,8 @@ from torch import Tensor
 
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Floats
+from stridewire_engine.evaluation.checkout import commit
+from stridewire_engine.evaluation.training_runs import CONFIGURATION, CURVE, ENDED, configuration
 from stridewire_engine.networks.blend import features
 from stridewire_engine.networks.blend.correction import linear
 from stridewire_engine.networks.blend.features import JOINTS
@@ -22,7 +24,7 @@ from stridewire_models.blend.networks import Correction, Paper, new_network
 from stridewire_models.blend.recipes import Phase, Recipe
 from stridewire_models.blend.rig_variation import vary_rigs
 
-CHECKPOINT, BEST, CURVE, CONFIGURATION = "checkpoint.pt", "best.pt", "curve.json", "run.json"
+CHECKPOINT, BEST = "checkpoint.pt", "best.pt"
 _SAVE_EVERY_S = 300.0
 _EXAMPLES = 20_000
 _VALIDATION_PAIRS = 4_000
@@ -64,10 +66,10 @@ class Run:
         self._validation = validation.draw(np.random.default_rng(0), _VALIDATION_PAIRS, 2)
         self._begin_phase()
         folder.mkdir(parents=True, exist_ok=True)
-        facts = {"seed": seed, **asdict(recipe)}
-        (folder / CONFIGURATION).write_text(json.dumps(facts, indent=1) + "\n")
         if (folder / CHECKPOINT).is_file():
             self._load()
+        else:
+            self._tell({"seed": seed, "commit": commit(), **asdict(recipe), ENDED: False})
 
     @property
     def judged(self) -> Correction | Paper:
@@ -103,6 +105,10 @@ class Run:
                 self._save()
                 saved = time.monotonic()
         self._save()
+        self._tell({**configuration(self.folder), ENDED: True})
+
+    def _tell(self, facts: Mapping[str, Any]) -> None:
+        (self.folder / CONFIGURATION).write_text(json.dumps(facts, indent=1) + "\n")
 
     def _step(self) -> None:
         phase = self.recipe.phases[self.progress.phase]
@@ -194,12 +200,17 @@ class Run:
         else:
             told = np.random.default_rng(1).random(len(pairs)) >= _HIDE_TIME
             x = features.inputs(pairs.start, pairs.end, pairs.duration * told)
-            self.network.bound(*_corrections(pairs))
+            self.network.bound(*_corrections(pairs, self.network.size(torch.from_numpy(x)).numpy()))
         self.network.fit(x)
 
 
-def _corrections(pairs: Pairs) -> tuple[Floats, Floats]:
-    """Return the largest and the usual correction `(CHANNELS,)` that the truth needs."""
+def _corrections(pairs: Pairs, size: Floats) -> tuple[Floats, Floats]:
+    """Return the corrections that the truth needs, `(CHANNELS,)`: the largest, and the usual ones.
+
+    Args:
+        pairs: `(N, 1)`.
+        size: `(N, 1)` that a correction is apt to have; the usual one is that of size 1.
+    """
     shares = np.repeat(pairs.weights[..., None], JOINTS, axis=-1)
     between = linear(pairs.start[:, None], pairs.end[:, None], shares)
     turn = quaternion.multiply(quaternion.conjugate(between.rotations), pairs.truth.rotations)
@@ -207,7 +218,7 @@ def _corrections(pairs: Pairs) -> tuple[Floats, Floats]:
     moved = pairs.truth.hips - between.hips
     both = np.concatenate([moved, turns.reshape(*turns.shape[:-2], -1)], axis=-1)[:, 0]
     bounds = np.percentile(np.abs(both), 99.9, axis=0) * 1.25
-    return np.maximum(bounds, 1e-3), np.maximum(both.std(0), 1e-4)
+    return np.maximum(bounds, 1e-3), np.maximum(both.std(0) / np.sqrt(np.mean(size**2)), 1e-4)
 
 
 def _schedule(

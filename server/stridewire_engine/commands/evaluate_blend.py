@@ -3,6 +3,7 @@
 import json
 import sys
 from collections.abc import Mapping
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import click
 import numpy as np
 
 from stridewire import __version__
+from stridewire.motion.array_types import Floats
 from stridewire_engine.evaluation.blend_methods import (
     BATCHES,
     as_served,
@@ -19,9 +21,11 @@ from stridewire_engine.evaluation.blend_methods import (
 )
 from stridewire_engine.evaluation.blend_table import rows
 from stridewire_engine.evaluation.blending import DURATIONS, LINEAR, Method, blend_linearly, measure
+from stridewire_engine.evaluation.checkout import commit
 from stridewire_engine.evaluation.split_clips import import_clips, split_files
-from stridewire_engine.networks.blend import blend_network
-from stridewire_engine.networks.blend.network import load_network
+from stridewire_engine.evaluation.training_runs import WEIGHTS, record
+from stridewire_engine.networks.blend import BlendNetwork, blend_network
+from stridewire_engine.networks.blend.network import PaperNetwork, load_network
 from stridewire_engine.networks.blend.pairs import Frames, Pairs
 
 _COLUMNS = (
@@ -38,10 +42,28 @@ _COLUMNS = (
     type=click.Path(exists=True, file_okay=False, path_type=Path),
     help="Folder with split.csv and the unpacked data sets; STRIDEWIRE_DATA by default.",
 )
-@click.option("--set", "name", default="cmu", show_default=True, help="Data set.")
 @click.option(
-    "--split", type=click.Choice(("test", "validation", "train")), default="test",
-    show_default=True, help="Split of it.",
+    "--set",
+    "names",
+    multiple=True,
+    default=("cmu",),
+    show_default=True,
+    help="Data set; may be given several times.",
+)
+@click.option(
+    "--split",
+    "splits",
+    multiple=True,
+    type=click.Choice(("test", "validation", "train")),
+    default=("test",),
+    show_default=True,
+    help="Split of each; may be given several times.",
+)
+@click.option(
+    "--run",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="Measure the exported network of this training run instead of the one that ships, and "
+    "tell how it was trained.",
 )  # fmt: skip
 @click.option(
     "--network",
@@ -56,40 +78,89 @@ _COLUMNS = (
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def blend(
-    data: Path, name: str, split: str, networks: tuple[str, ...], step: float, as_json: bool
+    data: Path,
+    names: tuple[str, ...],
+    splits: tuple[str, ...],
+    run: Path | None,
+    networks: tuple[str, ...],
+    step: float,
+    as_json: bool,
 ) -> None:
     """Measure posture blends on captured pairs 0.1 to 1 s apart.
 
     What was captured between two moments is the truth. Intervals are 95 % bootstrap intervals over
     clips.
     """
-    methods: dict[str, Method] = {
-        "neural": as_served(blend_network()),
-        "neural, duration not told": as_served(blend_network(), tell_duration=False),
-        "neural, feet as they come": by_network(blend_network()),
-        **dict(map(_other, networks)),
-    }
-    files = split_files(data, name, split)
-    with click.progressbar(
-        import_clips(files), length=len(files), label="importing", file=sys.stderr
-    ) as clips:
-        frames = Frames.of(clip for clip in clips if clip is not None)
-    with click.progressbar(length=len(DURATIONS), label="measuring", file=sys.stderr) as bar:
-        measured = measure(frames, methods, blend_network().deviation, step=step, done=bar.update)
-    table = [*rows(name, split, measured), *_times(name, split, frames, methods)]
-    settings = {
+    network = load_network(run / WEIGHTS) if run else blend_network()
+    methods = {**_ways(network), **dict(map(_other, networks))}
+    settings: dict[str, Any] = {
         "version": __version__,
-        "model_sha256": blend_network().model.hash,
-        "clips": len(frames.lengths),
-        "frames": int(frames.lengths.sum()),
+        "command": " ".join(["stridewire", *sys.argv[1:]]),
+        "commit": commit(),
+        "model_sha256": network.model.hash,
+        "training": record(run) if run else None,
         "step_s": step,
-        "by_network_pct": round(100.0 * share_by_network(blend_network(), _drawn(frames)), 1),
-        "command": " ".join(sys.argv[1:]),
+        "data": [],
     }
+    table: list[dict[str, Any]] = []
+    for name, split in product(names, splits):
+        frames = _frames(data, name, split)
+        settings["data"].append(_about(name, split, frames, network))
+        part = _rows(name, split, frames, methods, network.deviation, step)
+        table += part
+        if not as_json:
+            click.echo(f"{name}, {split}")
+            _print(part)
     if as_json:
         click.echo(json.dumps({"settings": settings, "rows": table}))
-    else:
-        _print(table)
+
+
+def _ways(network: BlendNetwork | PaperNetwork) -> dict[str, Method]:
+    if isinstance(network, PaperNetwork):
+        return {"neural-paper": by_network(network)}
+    return {
+        "neural": as_served(network),
+        "neural, duration not told": as_served(network, tell_duration=False),
+        "neural, feet as they come": by_network(network),
+    }
+
+
+def _frames(data: Path, name: str, split: str) -> Frames:
+    files = split_files(data, name, split)
+    with click.progressbar(
+        import_clips(files), length=len(files), label=f"importing {name}", file=sys.stderr
+    ) as clips:
+        return Frames.of(clip for clip in clips if clip is not None)
+
+
+def _about(
+    name: str, split: str, frames: Frames, network: BlendNetwork | PaperNetwork
+) -> dict[str, Any]:
+    about = {
+        "data": name,
+        "split": split,
+        "clips": len(frames.lengths),
+        "frames": int(frames.lengths.sum()),
+    }
+    if isinstance(network, BlendNetwork):
+        share = share_by_network(network, _drawn(frames))
+        about["by_network_pct"] = round(100.0 * share, 1)
+    return about
+
+
+def _rows(
+    name: str,
+    split: str,
+    frames: Frames,
+    methods: Mapping[str, Method],
+    deviation: Floats,
+    step: float,
+) -> list[dict[str, Any]]:
+    with click.progressbar(
+        length=len(DURATIONS), label=f"measuring {name} {split}", file=sys.stderr
+    ) as bar:
+        measured = measure(frames, methods, deviation, step=step, done=bar.update)
+    return [*rows(name, split, measured), *_times(name, split, frames, methods)]
 
 
 def _other(text: str) -> tuple[str, Method]:

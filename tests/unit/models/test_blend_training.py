@@ -13,6 +13,7 @@ from stridewire.motion.array_types import Quaternions
 from stridewire.motion.clip import Pose
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.building.synthetic import synthetic_clips
+from stridewire_engine.evaluation.training_runs import RunError
 from stridewire_engine.networks.blend.network import BlendNetwork, PaperNetwork
 from stridewire_engine.networks.blend.pairs import Frames
 from stridewire_engine.networks.onnx_model import OnnxModel
@@ -24,7 +25,7 @@ import torch
 
 from stridewire_models.blend import rotations
 from stridewire_models.blend.capsules import penetration
-from stridewire_models.blend.export import RunError, posture_deviation, read_run, to_onnx
+from stridewire_models.blend.export import posture_deviation, read_run, to_onnx
 from stridewire_models.blend.networks import VARIANTS, new_network
 from stridewire_models.blend.recipes import RECIPES, Recipe
 from stridewire_models.blend.training import CHECKPOINT, Run

@@ -95,6 +95,8 @@ class PaperNetwork:
         """
         model.require(facts("paper"))
         self.model = model
+        self.deviation = _numbers(model, "deviation", features.POSTURE_SIZE)
+        """`(135,)` standard deviations of postures, as the paper writes them, in training."""
 
     def between(self, start: Postures, end: Postures, weights: Floats, duration: Floats) -> Between:
         """Blend pairs; the same weight for all joints `(N, W, J)`, the duration is not read."""
