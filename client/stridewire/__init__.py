@@ -21,6 +21,7 @@ _HOME = {
             "Frame",
             "FrameFlag",
             "GroundPose",
+            "Inside",
             "Pacing",
             "PoseFormat",
             "RootCorrection",

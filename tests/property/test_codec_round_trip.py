@@ -27,6 +27,7 @@ from stridewire._messages import (
     Frame,
     Ground,
     GroundPose,
+    Inside,
     LibraryInfo,
     Limits,
     Match,
@@ -202,6 +203,19 @@ events: st.SearchStrategy[Event] = st.one_of(
 
 
 @st.composite
+def insides(draw: st.DrawFn, count: int, joints: int) -> Inside:
+    """Draw what goes on behind a frame, with at least one time ahead."""
+    times = draw(st.integers(1, 3))
+    return Inside(
+        draw(block(times)),
+        draw(block(count, times, 3)),
+        draw(block(count, times, 3)),
+        draw(block(count, 3)),
+        draw(block(count, joints, 4)),
+    )
+
+
+@st.composite
 def frames(draw: st.DrawFn) -> Frame:
     """Draw a frame of any number of characters on a skeleton of any size."""
     count, joints = draw(st.integers(1, 3)), draw(st.integers(1, 4))
@@ -219,6 +233,7 @@ def frames(draw: st.DrawFn) -> Frame:
         foot_targets=draw(block(count, 2, 3)),
         flags=draw(ids(count)),
         simulated_root=draw(st.none() | block(count, 4)),
+        inside=draw(st.none() | insides(count, joints)),
         events=tuple(draw(st.lists(events, max_size=3))),
         dropped=draw(uint),
         timings_ms=draw(weights),

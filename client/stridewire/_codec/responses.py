@@ -22,6 +22,7 @@ from stridewire._errors import ServerError, Violation
 from stridewire._messages import (
     Detail,
     Frame,
+    Inside,
     Notice,
     Opened,
     Pacing,
@@ -98,6 +99,16 @@ def _encode_frame(frame: Frame) -> pb.Frame:
         write_blocks(wire, root_delta=frame.root_delta, hips=frame.hips, rotations=frame.rotations)
     if frame.simulated_root is not None:
         write_blocks(wire, simulated_root=frame.simulated_root)
+    if frame.inside is not None:
+        inside = frame.inside
+        write_blocks(
+            wire,
+            ahead_s=inside.ahead_s,
+            predicted=inside.predicted,
+            captured=inside.captured,
+            sampled_hips=inside.hips,
+            sampled_rotations=inside.rotations,
+        )
     return wire
 
 
@@ -123,10 +134,23 @@ def _decode_frame(wire: pb.Frame) -> Frame:
         simulated_root=(
             read_block(wire, "simulated_root", count, 4) if wire.simulated_root else None
         ),
+        inside=_decode_inside(wire, count) if wire.ahead_s else None,
         events=tuple(map(decode_event, wire.events)),
         dropped=wire.dropped,
         timings_ms={timing.stage: timing.elapsed_ms for timing in wire.timings},
         format=PoseFormat.F16 if halves else PoseFormat.F32,
+    )
+
+
+def _decode_inside(wire: pb.Frame, count: int) -> Inside:
+    times = len(wire.ahead_s)
+    joints = len(wire.sampled_rotations) // (4 * count) if count else 0
+    return Inside(
+        ahead_s=read_block(wire, "ahead_s", times),
+        predicted=read_block(wire, "predicted", count, times, 3),
+        captured=read_block(wire, "captured", count, times, 3),
+        hips=read_block(wire, "sampled_hips", count, 3),
+        rotations=read_block(wire, "sampled_rotations", count, joints, 4),
     )
 
 

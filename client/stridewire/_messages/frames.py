@@ -93,6 +93,22 @@ Event = Transition | ContactChange | ClipEnd | TagEntered
 
 
 @dataclass(frozen=True)
+class Inside:
+    """What the runtime works with behind a frame; arrays are float32 and read-only views."""
+
+    ahead_s: Floats
+    """`(K,)` seconds from now, ascending."""
+    predicted: Floats
+    """`(N, K, 3)` x, z, yaw in the world: where the control's springs lead the simulated root."""
+    captured: Floats
+    """`(N, K, 3)` x, z, yaw in the world: where the clip that plays would lead the root."""
+    hips: Floats
+    """`(N, 3)` of the clip that plays, before stitching, on the library's skeleton."""
+    rotations: Floats
+    """`(N, J, 4)` of the same."""
+
+
+@dataclass(frozen=True)
 class Frame:
     """The poses of one tick; arrays are float32 and read-only views."""
 
@@ -117,7 +133,9 @@ class Frame:
     flags: Indices
     """`(N,)` uint32 masks of `1 << FrameFlag`."""
     simulated_root: Floats | None = None
-    """`(N, 4)` x, y, z, yaw; only with `Detail.COSTS`."""
+    """`(N, 4)` x, y, z, yaw; only from `Detail.COSTS` on."""
+    inside: Inside | None = None
+    """Only with `Detail.INSIDE`."""
     events: Sequence[Event] = ()
     dropped: int = 0
     timings_ms: Mapping[str, float] = field(default_factory=dict)

@@ -25,6 +25,7 @@ class Detail(IntEnum):
     NONE = 1
     EVENTS = 2
     COSTS = 3
+    INSIDE = 4
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,8 @@ class Crowd:
         """Index the library and begin without characters."""
         self.library = library
         self.matcher = Matcher(library)
+        self.settings = settings
+        self.max_speed = max_speed
         self._tick = Tick(self.matcher, settings, max_speed, clock)
         channels = len(self.matcher.schema.channels)
         self.state = Characters.allocate(0, len(library.skeleton), channels)

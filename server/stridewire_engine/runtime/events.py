@@ -60,7 +60,7 @@ class TickEvents(Sequence[Event]):
         if jumps is None:
             return
         inside = (jumps.characters >= self.rows.start) & (jumps.characters < self.rows.stop)
-        costs = self.detail is Detail.COSTS
+        costs = self.detail >= Detail.COSTS
         for i in np.flatnonzero(inside):
             character = int(self.characters[jumps.characters[i] - self.rows.start])
             clips = self.matcher.library.clips

@@ -24,6 +24,7 @@ from stridewire.motion.contacts import to_mask
 from stridewire_engine.runtime import admission, controls
 from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.events import TickEvents
+from stridewire_engine.runtime.inside import look
 from stridewire_engine.runtime.output import Output
 from stridewire_engine.runtime.roster import Roster
 from stridewire_engine.runtime.tick import Block
@@ -122,7 +123,8 @@ class Session:
             contacts=to_mask(block.contacts[rows]),
             foot_targets=shown.foot_targets,
             flags=self._roster.take_flags(),
-            simulated_root=shown.simulated_root if detail is Detail.COSTS else None,
+            simulated_root=shown.simulated_root if detail >= Detail.COSTS else None,
+            inside=look(crowd, self.rows, self._roster.scales) if detail is Detail.INSIDE else None,
             events=TickEvents(block, rows, ids, self._frame, detail, crowd.matcher, crowd.sets),
             timings_ms=block.timings_ms,
             format=self.opened.settings.format,

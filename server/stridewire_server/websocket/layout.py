@@ -31,6 +31,7 @@ _XYZ = ["x", "y", "z"]
 _QUATERNION = ["w", "x", "y", "z"]
 _ROOT = [*_XYZ, "qw", "qx", "qy", "qz"]
 _YAW = [*_XYZ, "yaw"]
+_WAY = ["x", "z", "yaw"]
 
 BLOCKS: dict[str, dict[str, Any]] = {
     "characters": {"shape": ["N"]},
@@ -46,8 +47,13 @@ BLOCKS: dict[str, dict[str, Any]] = {
     "root_delta_f16": {"shape": ["N", 4], "columns": _YAW, "type": "float16"},
     "hips_f16": {"shape": ["N", 3], "columns": _XYZ, "type": "float16"},
     "rotations_f16": {"shape": ["N", "J", 4], "columns": _QUATERNION, "type": "float16"},
+    "ahead_s": {"shape": ["K"]},
+    "predicted": {"shape": ["N", "K", 3], "columns": _WAY},
+    "captured": {"shape": ["N", "K", 3], "columns": _WAY},
+    "sampled_hips": {"shape": ["N", 3], "columns": _XYZ},
+    "sampled_rotations": {"shape": ["N", "J", 4], "columns": _QUATERNION},
 }
-"""Row-major; N characters and J joints of `Opened.skeleton`."""
+"""Row-major; N characters, J joints of the skeleton, K times ahead."""
 
 _KINDS = {
     FieldDescriptorProto.TYPE_DOUBLE: ("float64", 1),
