@@ -6,16 +6,19 @@ from pathlib import Path
 CHANGED = "-changed"
 
 
-def commit() -> str:
-    """Return the commit that this code is of, with `-changed` where tracked files differ from it.
+def commit(file: Path = Path(__file__)) -> str:
+    """Return the commit that code is of, with `-changed` where tracked files differ from it.
+
+    Args:
+        file: Of the code.
 
     Returns:
         Empty where the code is installed, not run from a checkout.
     """
-    here = Path(__file__).parent
+    here = file.parent
     name = _git(here, "rev-parse", "--short=12", "HEAD")
     # a package inside of somebody else's checkout is not of its commit
-    if not name or not _git(here, "ls-files", Path(__file__).name):
+    if not name or not _git(here, "ls-files", file.name):
         return ""
     return name + (CHANGED if _git(here, "status", "--porcelain", "--untracked-files=no") else "")
 

@@ -13,7 +13,8 @@ from stridewire.motion.array_types import Quaternions
 from stridewire.motion.clip import Pose
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.building.synthetic import synthetic_clips
-from stridewire_engine.evaluation.training_runs import RunError
+from stridewire_engine.evaluation.training_runs import RunError, record
+from stridewire_engine.networks.blend import features
 from stridewire_engine.networks.blend.network import BlendNetwork, PaperNetwork
 from stridewire_engine.networks.blend.pairs import Frames
 from stridewire_engine.networks.onnx_model import OnnxModel
@@ -99,9 +100,21 @@ def run(
     return trained
 
 
-def test_a_run_learns(run: Run) -> None:
-    """A few steps lower the loss on the validation data."""
+def test_a_run_learns_and_can_be_told(run: Run) -> None:
+    """A few steps lower the loss on the validation data; the folder says how it came to be."""
     assert run.progress.best < 0.95 * run.progress.curve[0]["validation"]
+    told = record(run.folder)
+    assert (told["variant"], told["steps"]) == (run.recipe.variant, 120)
+    assert told["validation"] == pytest.approx(run.progress.best, abs=1e-5)
+
+
+def test_one_posture_is_blended_to_itself(run: Run, frames: Frames) -> None:
+    """Between a posture and itself a correction is nothing, whatever the network has learned."""
+    if run.recipe.variant == "correction":
+        start = frames.draw(np.random.default_rng(0), 5, 1).start
+        rows = torch.from_numpy(features.inputs(start, start, np.full(5, 0.5)))
+        coefficients, _ = run.network(rows)
+        assert not coefficients.any()
 
 
 def test_a_run_goes_on_where_it_stopped(tmp_path: Path, frames: Frames) -> None:
