@@ -38,7 +38,7 @@ class Recipe:
 
 
 RECIPES = {
-    "correction": Recipe("correction", (Phase(6_000, 256, 2, 1e-3, 0.1, 8),), 1e-2, 0.999, True),
+    "correction": Recipe("correction", (Phase(4_000, 256, 2, 1e-3, 0.1, 8),), 1e-2, 0.999, True),
     # two phases, the second to fine-tune (Gaisbauer et al. 2019, section 3.4)
     "paper": Recipe(
         "paper",
