@@ -22,7 +22,7 @@ from stridewire.motion.kinematics import forward_world
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.blending import Pair, blend
 from stridewire_engine.building import open_library
-from stridewire_engine.evaluation.blend_methods import as_served, by_network, microseconds
+from stridewire_engine.evaluation.blend_methods import as_served, microseconds
 from stridewire_engine.evaluation.blend_table import FEWEST, mean_share, rows
 from stridewire_engine.evaluation.blending import LINEAR, Measured, measure
 from stridewire_engine.evaluation.split_clips import import_clips, split_files
@@ -114,7 +114,6 @@ def _measured(name: str, step: float) -> Measured:
     methods = {
         "neural": as_served(network),
         "silenced": as_served(Silenced(network.model)),
-        "bare": by_network(network),
     }
     return measure(frames(name), methods, network.deviation, step=step)
 

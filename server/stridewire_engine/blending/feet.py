@@ -47,6 +47,10 @@ def keep_feet(between: Postures, start: Postures, end: Postures, weights: Floats
     target = positions[:, ankle] * (1.0 - stands) + spot * stands
     foot = quaternion.nlerp(turned[:, ankle], sole, stands[..., 0])
     target = target + _lift(target, foot, first[0], last[0])
+    moved = np.linalg.norm(target - positions[:, ankle], axis=-1) > _MOVED
+    moved &= _whole(weights)
+    if not moved.any():
+        return between
     limb = two_bone_ik(
         positions[:, hip],
         positions[:, knee],
@@ -56,8 +60,6 @@ def keep_feet(between: Postures, start: Postures, end: Postures, weights: Floats
         target,
         quaternion.rotate(turned[:, knee], np.broadcast_to([0.0, 0.0, 1.0], target.shape)),
     )
-    moved = np.linalg.norm(target - positions[:, ankle], axis=-1) > _MOVED
-    moved &= _whole(weights)
     return Postures(between.hips, _turn_legs(between, turned, limb.upper, limb.lower, foot, moved))
 
 

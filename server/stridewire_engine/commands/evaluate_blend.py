@@ -92,7 +92,7 @@ def blend(
     clips.
     """
     network = load_network(run / WEIGHTS) if run else blend_network()
-    methods = {**_ways(network), **dict(map(_other, networks))}
+    methods = {**_ways(network, in_parts=not run), **dict(map(_other, networks))}
     settings: dict[str, Any] = {
         "version": __version__,
         "command": " ".join(["stridewire", *sys.argv[1:]]),
@@ -115,11 +115,14 @@ def blend(
         click.echo(json.dumps({"settings": settings, "rows": table}))
 
 
-def _ways(network: BlendNetwork | PaperNetwork) -> dict[str, Method]:
+def _ways(network: BlendNetwork | PaperNetwork, in_parts: bool) -> dict[str, Method]:
+    """Return what is measured of a network, in parts also without one thing or another."""
     if isinstance(network, PaperNetwork):
         return {"neural-paper": by_network(network)}
-    return {
-        "neural": as_served(network),
+    served = {"neural": as_served(network)}
+    if not in_parts:
+        return served
+    return served | {
         "neural, duration not told": as_served(network, tell_duration=False),
         "neural, feet as they come": by_network(network),
     }
