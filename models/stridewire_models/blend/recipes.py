@@ -38,11 +38,11 @@ class Recipe:
 
 
 RECIPES = {
-    "correction": Recipe("correction", (Phase(4_000, 256, 2, 1e-3, 0.1, 8),), 1e-2, 0.999, True),
+    "correction": Recipe("correction", (Phase(3_000, 256, 2, 1e-3, 0.1, 8),), 1e-2, 0.999, True),
     # two phases, the second to fine-tune (Gaisbauer et al. 2019, section 3.4)
     "paper": Recipe(
         "paper",
-        (Phase(100_000, 32, 1, 1e-3, 0.0, 60), Phase(50, 30_000, 1, 1e-3, 0.0, 10)),
+        (Phase(60_000, 32, 1, 1e-3, 0.0, 30), Phase(50, 30_000, 1, 1e-3, 0.0, 10)),
         0.0,
         0.0,
         False,
