@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 STRIDEWIRE_DATA ?= $(abspath ../shared/data)
 export STRIDEWIRE_DATA PROTO_VENV
 
-.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge reference image clean help
+.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge pictures reference image clean help
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -51,6 +51,9 @@ show-surface: $(VENV)/.dev ## check what the interface claims, over the wire and
 
 show-judge: $(VENV)/.dev ## check how good streamed motion is, beside the captured and a naive baseline
 	$(BIN)/python tests/show/judge.py $(SHOW)
+
+pictures: $(VENV)/.server ## draw the animation of the README anew
+	$(BIN)/python tests/docs/pictures.py
 
 reference: $(VENV)/.dev ## write docs/reference.md anew after a change in proto/ or a command
 	$(BIN)/python tests/docs/reference.py > docs/reference.md

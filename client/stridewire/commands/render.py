@@ -1,11 +1,11 @@
-"""`stridewire render`: a motion file as a contact sheet."""
+"""`stridewire render`: a motion file as a contact sheet, or as an animated picture."""
 
 import json
 from pathlib import Path
 
 import click
 
-from stridewire.drawing import Subject, draw_contact_sheet
+from stridewire.drawing import Subject, draw_animation, draw_contact_sheet
 from stridewire.formats.reading import read_motion
 
 
@@ -15,6 +15,11 @@ from stridewire.formats.reading import read_motion
     "--out",
     type=click.Path(dir_okay=False, path_type=Path),
     help="PNG to write; beside the input by default.",
+)
+@click.option(
+    "--animate",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Animated WebP or GIF to write instead.",
 )
 @click.option("--start", default=0.0, show_default=True, help="Begin in seconds.")
 @click.option("--end", type=float, help="End in seconds; the file's by default.")
@@ -30,6 +35,7 @@ from stridewire.formats.reading import read_motion
 def render(
     motion: Path,
     out: Path | None,
+    animate: Path | None,
     start: float,
     end: float | None,
     rate: float | None,
@@ -40,17 +46,23 @@ def render(
 ) -> None:
     """Draw a motion file (BVH, AMC beside its ASF, npz, glTF) as a contact sheet.
 
-    Shows figures at even times, the way from above, the feet and the speed over time.
+    Shows figures at even times, the way from above, the feet and the speed over time; with
+    --animate a figure that moves.
     """
-    out = out or motion.with_suffix(".png")
+    if out and animate:
+        raise click.UsageError("--out is a contact sheet, --animate an animated picture: give one")
+    picture = animate or out or motion.with_suffix(".png")
     source = read_motion(motion)
     if source.frame_rate is None and rate is None:
         raise click.UsageError(f"{motion} does not say its frame rate; give it with --rate")
     subject = Subject.of_source(source, rate)
     subject = subject.between(start, subject.seconds if end is None else end)
-    draw_contact_sheet(subject, out, title=title, columns=columns, rows=rows)
+    if animate:
+        draw_animation(subject, animate)
+    else:
+        draw_contact_sheet(subject, picture, title=title, columns=columns, rows=rows)
     facts = {
-        "picture": str(out),
+        "picture": str(picture),
         "motion": str(motion),
         "frames": len(subject.positions),
         "frame_rate_hz": subject.frame_rate,
@@ -60,4 +72,6 @@ def render(
     if as_json:
         click.echo(json.dumps(facts))
     else:
-        click.echo(f"{out}: {subject.seconds:.1f} s of {motion}, {len(subject.positions)} frames")
+        click.echo(
+            f"{picture}: {subject.seconds:.1f} s of {motion}, {len(subject.positions)} frames"
+        )

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stridewire._errors import StridewireError
 from stridewire.drawing.camera import Camera
+from stridewire.drawing.canvas import new_figure
 from stridewire.drawing.palette import LEFT, MIDDLE, PLANTED, RIGHT
 from stridewire.drawing.stick_figure import draw_moment
 from stridewire.drawing.strips import draw_feet, draw_plan, draw_speed
@@ -51,27 +51,13 @@ def draw_contact_sheet(
     """
     if columns < 4 or rows < 1:
         raise ValueError(f"{columns} columns, {rows} rows; expected 4 or more columns and a row")
-    figure = _new_figure(columns * _PANEL_INCHES[0], rows * _PANEL_INCHES[1] + _STRIPS_INCHES + 0.4)
+    figure = new_figure(columns * _PANEL_INCHES[0], rows * _PANEL_INCHES[1] + _STRIPS_INCHES + 0.4)
     camera = Camera.beside(subject)
     frames = np.linspace(0, len(subject.positions) - 1, columns * rows).round().astype(np.intp)
     _moments(figure, subject, camera, frames, columns)
     _strips(figure, subject, camera, frames)
     _heading(figure, subject, title)
     figure.savefig(path, dpi=_DOTS_PER_INCH, format="png")
-
-
-def _new_figure(width: float, height: float) -> "Figure":
-    """Return an empty figure; not pyplot's, which keeps figures and wants a screen."""
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ModuleNotFoundError as error:
-        raise StridewireError(
-            "drawing needs matplotlib: pip install 'stridewire[server]'"
-        ) from error
-    figure = Figure(figsize=(width, height), facecolor="white")
-    FigureCanvasAgg(figure)
-    return figure
 
 
 def _moments(

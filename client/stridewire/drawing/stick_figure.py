@@ -26,9 +26,9 @@ def draw_moment(axes: "Axes", subject: Subject, camera: Camera, frame: int) -> N
     axes.set_aspect("equal")
     axes.axis("off")
     root = subject.root[frame]
-    _ground(axes, camera, root)
-    _path(axes, subject, camera, frame)
-    _planted(axes, subject, camera, frame)
+    draw_ground(axes, camera, root, _GROUND_RADIUS)
+    draw_path(axes, subject, camera, frame, _GROUND_RADIUS)
+    draw_planted(axes, subject, camera, frame)
     _bones(axes, subject, camera, subject.positions[frame] * [1.0, 0.0, 1.0], root, shadow=True)
     before = subject.positions[max(frame - round(_GHOST_S * subject.frame_rate), 0)]
     _bones(axes, subject, camera, before, root, ghost=True)
@@ -83,15 +83,17 @@ def _head(
     )
 
 
-def _ground(axes: "Axes", camera: Camera, root: Vectors) -> None:
+def draw_ground(
+    axes: "Axes", camera: Camera, root: Vectors, radius: float, step: float = _GRID_STEP
+) -> None:
     """Draw the world's grid within a circle around the root: it moves as the figure does."""
     from matplotlib.collections import LineCollection
 
     lines = []
     for axis, other in ((0, 2), (2, 0)):
-        first = np.ceil((root[axis] - _GROUND_RADIUS) / _GRID_STEP) * _GRID_STEP
-        for value in np.arange(first, root[axis] + _GROUND_RADIUS, _GRID_STEP):
-            half = np.sqrt(_GROUND_RADIUS**2 - (value - root[axis]) ** 2)
+        first = np.ceil((root[axis] - radius) / step) * step
+        for value in np.arange(first, root[axis] + radius, step):
+            half = np.sqrt(radius**2 - (value - root[axis]) ** 2)
             ends = np.zeros((2, 3))
             ends[:, axis] = value
             ends[:, other] = root[other] + np.array([-half, half])
@@ -99,10 +101,10 @@ def _ground(axes: "Axes", camera: Camera, root: Vectors) -> None:
     axes.add_collection(LineCollection(lines, colors=GRID, linewidths=0.6, zorder=0))
 
 
-def _path(axes: "Axes", subject: Subject, camera: Camera, frame: int) -> None:
+def draw_path(axes: "Axes", subject: Subject, camera: Camera, frame: int, radius: float) -> None:
     """Draw the root's way near the figure and an arrow where it faces."""
     root = subject.root[frame]
-    near = np.linalg.norm(subject.root - root, axis=-1) < _GROUND_RADIUS
+    near = np.linalg.norm(subject.root - root, axis=-1) < radius
     start = frame - int(np.argmin(np.append(near[frame::-1], False))) + 1
     end = frame + int(np.argmin(np.append(near[frame:], False)))
     way, _ = camera.project(subject.root[start:end], root)
@@ -119,12 +121,18 @@ def _path(axes: "Axes", subject: Subject, camera: Camera, frame: int) -> None:
     )
 
 
-def _planted(axes: "Axes", subject: Subject, camera: Camera, frame: int) -> None:
+def draw_planted(
+    axes: "Axes",
+    subject: Subject,
+    camera: Camera,
+    frame: int,
+    radius: float = _PLANTED_RADIUS,
+) -> None:
     """Draw a disc on the ground under each planted joint."""
     from matplotlib.patches import Polygon
 
     angle = np.linspace(0.0, 2.0 * np.pi, 24)
-    circle: Floats = _PLANTED_RADIUS * np.stack([np.sin(angle), 0.0 * angle, np.cos(angle)], -1)
+    circle: Floats = radius * np.stack([np.sin(angle), 0.0 * angle, np.cos(angle)], -1)
     for joint in subject.feet[subject.planted[frame]]:
         under = subject.positions[frame, joint] * [1.0, 0.0, 1.0]
         disc, _ = camera.project(under + circle, subject.root[frame])

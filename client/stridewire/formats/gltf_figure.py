@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from stridewire.drawing.body_shape import BREADTH, HEAD, TRUNK, limb_radii, trunk_joints
 from stridewire.drawing.palette import side_colour
 from stridewire.formats.units import longest_chain
 from stridewire.motion.array_types import Floats, Indices, Vectors
@@ -18,13 +19,6 @@ _AROUND = 12
 """Vertices around a capsule."""
 _ALONG = 4
 """Rings of each of its round ends."""
-
-_LIMB, _LEAST, _TRUNK, _HEAD = 0.078, 0.04, 0.085, 0.095
-"""Radii by the length of the longest chain of bones, about a leg's: 1 m in people."""
-_THINNER = 0.45
-"""Limbs lose so much of their radius towards their ends."""
-_BREADTH = 1.45
-"""A trunk is so much broader than deep."""
 
 
 @dataclass(frozen=True)
@@ -71,15 +65,16 @@ def figure(skeleton: Skeleton, rest: Vectors, tips: dict[int, Vectors]) -> list[
 def _bones(skeleton: Skeleton, rest: Vectors, tips: dict[int, Vectors]) -> list[_Capsule]:
     """Return a capsule for each bone, of the side of its lower joint."""
     size, sides = longest_chain(skeleton), joint_sides(skeleton.names)
-    trunk, head = _trunk(skeleton, sides), head_joint(skeleton.names)
-    radii = _limb_radii(skeleton, trunk, size)
+    trunk, head = trunk_joints(skeleton.parents, sides), head_joint(skeleton.names)
+    bones = np.linalg.norm(skeleton.offsets, axis=-1)
+    radii = limb_radii(skeleton.parents, bones, trunk, size).tolist()
     across = _across(rest, sides)
     capsules = []
     for joint, parent in enumerate(skeleton.parents[1:], start=1):
         side, start, end = int(sides[joint]), rest[parent], rest[joint]
         if parent in trunk and side == 0:
             reach = end if joint in trunk else 0.5 * (start + end)
-            thick = (_TRUNK * size, _TRUNK * size)
+            thick = (TRUNK * size, TRUNK * size)
             capsules.append(_Capsule(parent, side, start, reach, thick, across))
         if joint not in trunk:
             ends = (radii[joint if parent in trunk else parent], radii[joint])
@@ -91,34 +86,6 @@ def _bones(skeleton: Skeleton, rest: Vectors, tips: dict[int, Vectors]) -> list[
                 _Capsule(joint, int(sides[joint]), rest[joint], rest[joint] + tip, thin)
             )
     return [c for c in capsules if np.linalg.norm(c.end - c.start) > 1e-4 * size]
-
-
-def _trunk(skeleton: Skeleton, sides: Indices) -> set[int]:
-    """Return the joints of the middle from which, or below which, a sided joint branches off."""
-    trunk: set[int] = set()
-    for joint in range(len(skeleton) - 1, 0, -1):
-        parent = skeleton.parents[joint]
-        if sides[parent] == 0 and (sides[joint] != 0 or joint in trunk):
-            trunk.add(parent)
-    return trunk
-
-
-def _limb_radii(skeleton: Skeleton, trunk: set[int], size: float) -> list[float]:
-    """Return a radius for each joint: thicker in longer limbs, thinner towards their ends."""
-    bones = np.linalg.norm(skeleton.offsets, axis=-1)
-    below, way = np.zeros(len(skeleton)), np.zeros(len(skeleton))
-    for joint in range(len(skeleton) - 1, 0, -1):
-        parent = skeleton.parents[joint]
-        below[parent] = max(below[parent], below[joint] + bones[joint])
-    radii = [_LIMB * size]
-    whole = below.copy()
-    for joint, parent in enumerate(skeleton.parents[1:], start=1):
-        if parent >= 0 and parent not in trunk:
-            way[joint], whole[joint] = way[parent] + bones[joint], whole[parent]
-        share = way[joint] / max(float(whole[joint]), 1e-9)
-        thick = max(_LIMB * np.sqrt(whole[joint] / max(size, 1e-9)), _LEAST) * size
-        radii.append(float(thick * (1.0 - _THINNER * min(share, 1.0))))
-    return radii
 
 
 def _across(rest: Vectors, sides: Indices) -> Vectors | None:
@@ -136,7 +103,7 @@ def _head(skeleton: Skeleton, rest: Vectors, tips: dict[int, Vectors]) -> list[_
         return []
     way = tips.get(joint, skeleton.offsets[joint])
     way = way / max(float(np.linalg.norm(way)), 1e-9)
-    radius = _HEAD * longest_chain(skeleton)
+    radius = HEAD * longest_chain(skeleton)
     low, high = rest[joint] + 0.6 * radius * way, rest[joint] + 0.95 * radius * way
     return [_Capsule(joint, 0, low, high, (radius, radius))]
 
@@ -166,8 +133,8 @@ def _shaped(unit: Floats, capsule: _Capsule) -> tuple[Vectors, Vectors]:
     around = radii[:, None] * normals
     if capsule.broader is not None:
         sideways = (normals @ capsule.broader)[:, None] * capsule.broader
-        around = around + (_BREADTH - 1.0) * radii[:, None] * sideways
-        normals = normals - (1.0 - 1.0 / _BREADTH) * sideways
+        around = around + (BREADTH - 1.0) * radii[:, None] * sideways
+        normals = normals - (1.0 - 1.0 / BREADTH) * sideways
         normals = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
     return capsule.start + around + unit[:, 3:] * along, normals
 

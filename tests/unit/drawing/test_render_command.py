@@ -1,4 +1,4 @@
-"""`stridewire render`: BVH in, PNG out, errors in a sentence."""
+"""`stridewire render`: motion in, pictures out, errors in a sentence."""
 
 import json
 from pathlib import Path
@@ -8,6 +8,7 @@ from click.testing import CliRunner
 
 from stridewire.commands import main
 from stridewire.formats.bvh_writing import write_bvh
+from stridewire.formats.writing import write_clip
 from stridewire.motion.clip import Clip
 
 
@@ -43,12 +44,33 @@ def test_json_is_one_object(bvh: Path, tmp_path: Path) -> None:
     assert out.exists()
 
 
+def test_animate_writes_a_moving_picture(bvh: Path, tmp_path: Path) -> None:
+    """Of the span asked for; the contact sheet is left out."""
+    out = tmp_path / "sway.webp"
+    arguments = ["render", str(bvh), "--animate", str(out), "--end", "0.2", "--json"]
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 0, result.output
+    assert json.loads(result.output)["picture"] == str(out)
+    assert out.read_bytes()[8:12] == b"WEBP"
+    assert not bvh.with_suffix(".png").exists()
+
+
+def test_a_glb_is_drawn(tmp_path: Path, swaying_clip: Clip) -> None:
+    """Any format that can be read."""
+    write_clip(tmp_path / "sway.glb", swaying_clip)
+    result = CliRunner().invoke(main, ["render", str(tmp_path / "sway.glb")])
+    assert result.exit_code == 0, result.output
+    assert (tmp_path / "sway.png").exists()
+
+
 @pytest.mark.parametrize(
     ("content", "arguments", "message"),
     [
         ("no bvh at all", [], "expected a BVH file"),
         (None, ["--rate", "0"], "--rate"),
         (None, ["--start", "5"], "holds no frame"),
+        (None, ["--animate", "a.mp4"], "expected .webp or .gif"),
+        (None, ["--animate", "a.gif", "--out", "a.png"], "give one"),
     ],
 )
 def test_what_cannot_be_drawn_is_a_sentence(
