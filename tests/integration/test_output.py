@@ -64,7 +64,7 @@ def speeds(toes: Vectors, frames: list[Frame]) -> Floats:
 
 @pytest.mark.parametrize("skeleton", [mixamo(), cmu()], ids=["mixamo", "cmu"])
 def test_limbs_point_as_they_did_and_feet_stay(small_library: Library, skeleton: Skeleton) -> None:
-    """Limbs within a degree in 95 of 100 frames, planted toes no faster than the reference's."""
+    """Limbs within a degree, planted toes no faster than the reference's, hips without jumps."""
     rig = rig_of(skeleton)
     client = Client.in_process(small_library.path)
     theirs = walk(client, skeleton, rig.scale)
@@ -77,11 +77,14 @@ def test_limbs_point_as_they_did_and_feet_stay(small_library: Library, skeleton:
         axis=-1,
     )
     apart = np.rad2deg(np.arccos(np.clip(cosines, -1.0, 1.0)))
-    assert np.percentile(apart, 95) < 1.0
-    assert apart.mean() < 0.25
+    assert apart.max() < 1.0
+    assert apart.mean() < 0.05
     own = speeds(there[:, :, [at[toe] for toe in TOES]], theirs)
     reference = speeds(here[:, :, REFERENCE.indices(TOES)], ours)
-    assert own.mean() <= reference.mean() * rig.scale * 1.02 + 1e-4
+    assert own.mean() <= reference.mean()
+    hips = there[:, :, rig.joints[rig.part("Hips")]]
+    bumps = np.linalg.norm(np.diff(hips, 2, axis=0), axis=-1)
+    assert np.percentile(bumps, 99.0) < 0.008, "metres from where the frames before lead"
     roots = np.array([frame.root[:, :3] for frame in theirs])
     ours_scaled = np.array([frame.root[:, :3] for frame in ours]) * rig.scale
     np.testing.assert_allclose(roots, ours_scaled, atol=1e-3)

@@ -3,10 +3,10 @@
 Each part keeps its rotation in the world through the rig's constant turns, so limbs keep their
 directions; the middle between the hip joints moves by the ratio of the legs' lengths. Feet of other
 proportions would slide that way while they pivot. So a planted toe stays where it came down: the
-hips give way as far as both feet agree, the foot turns, and two-bone IK takes what is left.
+hips give way, which leaves all directions as they are. Where both feet are planted and disagree,
+they turn about their ankles, and two-bone IK turns the legs by less than a degree.
 """
 
-from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -14,48 +14,15 @@ import numpy as np
 from stridewire.motion import kinematics, quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire.motion.skeleton import REFERENCE
-from stridewire.motion.springs import damper_fraction
 from stridewire.motion.two_bone_ik import two_bone_ik
+from stridewire_engine.rigs.planting import Feet, Legs, Planting, nearby, plant
 from stridewire_engine.rigs.rig import SIDES, Rig
 
-_GIVING_HALFLIFE = 0.04
-"""Damper of the share that a foot has in moving the hips; seconds."""
-_RELEASE_HALFLIFE = 0.06
-"""Damper of the correction of a foot that has lifted; seconds."""
 _BUFFER = 0.002
 """Metres that a leg stays short of full length; the reference's have kept off it before."""
-_SETTLE_HALFLIFE = 0.05
-"""Damper that brings a foot that came down too high or too low to the ground; seconds."""
-
-
-@dataclass
-class Planting:
-    """What N characters' feet, left and right, remember from frame to frame."""
-
-    planted: Flags
-    """`(N, 2)` in the frame before."""
-    aside: Vectors
-    """`(N, 2, 3)` from where the reference's toe was, in the rig's size, to where the rig's came
-    down; in the world."""
-    correction: Vectors
-    """`(N, 2, 3)` by which the toe is off its limbs' directions, relative to the root."""
-    share: Floats
-    """`(N, 2)` 0 to 1: how far the foot moves the hips."""
-
-    @classmethod
-    def fresh(cls, count: int) -> "Planting":
-        """Return rows for characters that begin."""
-        return cls(
-            np.zeros((count, 2), np.bool_),
-            np.zeros((count, 2, 3), np.float32),
-            np.zeros((count, 2, 3), np.float32),
-            np.zeros((count, 2), np.float32),
-        )
-
-    def put(self, rows: Indices, other: "Planting", other_rows: Indices) -> None:
-        """Take rows over from elsewhere."""
-        for field in fields(self):
-            getattr(self, field.name)[rows] = getattr(other, field.name)[other_rows]
+_LIMB_TURN = np.float32(np.deg2rad(0.9))
+"""Furthest turn of a limb for its foot's sake; a foot that needs more slides."""
+_TOES = REFERENCE.indices([f"{side}Toe" for side in SIDES])
 
 
 class Posed(NamedTuple):
@@ -67,15 +34,6 @@ class Posed(NamedTuple):
     """`(N, J, 4)` local."""
     aside: Vectors
     """`(N, 2, 3)` from the reference's planted toes, in the rig's size, to the rig's; world."""
-
-
-class _Legs(NamedTuple):
-    """Both legs' joints, `(N, 2, 3)` each."""
-
-    hip: Vectors
-    knee: Vectors
-    ankle: Vectors
-    toe: Vectors
 
 
 class Posing:
@@ -112,6 +70,7 @@ class Posing:
         rotations: Quaternions,
         root: Quaternions,
         planted: Flags,
+        targets: Vectors,
         dt: Floats,
         planting: Planting,
     ) -> Posed:
@@ -120,8 +79,9 @@ class Posing:
         Args:
             hips: `(N, 3)` of the reference, relative to the root.
             rotations: `(N, 22, 4)` local, of the reference.
-            root: `(N, 4)` rotation of the root in the world.
+            root: `(N, 7)` place and rotation of the root in the world.
             planted: `(N, 2)` whether the left and the right toe are.
+            targets: `(N, 2, 3)` where the reference's toes are locked, world; NaN if free.
             dt: `(N,)` seconds since the frame before.
             planting: N rows; updated.
         """
@@ -129,17 +89,20 @@ class Posing:
         world = quaternion.multiply(turned[:, self._parts], self._turns)
         own_hips = self._hips_of(positions, world)
         legs = self._legs(own_hips, world)
-        scaled = np.float32(self.rig.scale) * positions[:, self._reference_toes]
-        to_world = np.broadcast_to(root[:, None], (*scaled.shape[:-1], 4))
-        shift = _plant(planting, legs.toe, scaled, self._height, to_world, planted, dt)
-        moved = _Legs(*(joint + shift[:, None] for joint in legs))
+        scale = np.float32(self.rig.scale)
+        scaled = scale * positions[:, self._reference_toes]
+        to_world = np.broadcast_to(root[:, None, 3:], (*scaled.shape[:-1], 4))
+        toes = root[:, None, :3] + quaternion.rotate(to_world, positions[:, _TOES])
+        feet = Feet(planted, scale * nearby(targets - toes), scaled, to_world)
+        shift = plant(planting, legs, feet, self._height, dt)
+        moved = Legs(*(joint + shift[:, None] for joint in legs))
         ahead = np.broadcast_to(np.array([0.0, 0.0, 1.0], np.float32), scaled.shape)
         poles = quaternion.rotate(turned[:, self._reference_shins], ahead)
         self._bend(world, moved, planting.correction, poles)
         local = kinematics.to_local(self.rig.skeleton, world[:, self.rig.sources])
         return Posed(own_hips + shift, local, planting.aside)
 
-    def _bend(self, world: Quaternions, legs: _Legs, correction: Vectors, poles: Vectors) -> None:
+    def _bend(self, world: Quaternions, legs: Legs, correction: Vectors, poles: Vectors) -> None:
         """Bring the toes aside by a correction: the feet turn, the legs take the rest."""
         foot = legs.toe - legs.ankle
         wanted = foot + correction
@@ -160,7 +123,8 @@ class Posing:
             _BUFFER,
         )
         world[:, self._foot] = quaternion.multiply(turn, world[:, self._foot])
-        world[:, self._thigh], world[:, self._shin] = limb.upper, limb.lower
+        world[:, self._thigh] = _slightly(world[:, self._thigh], limb.upper)
+        world[:, self._shin] = _slightly(world[:, self._shin], limb.lower)
 
     def _calibrate(self) -> None:
         """Find by how much hips and toes rise, so that the T-pose stands on the ground."""
@@ -181,12 +145,12 @@ class Posing:
         below = np.broadcast_to(self._to_hip.mean(axis=0), middle.shape)
         return np.asarray(middle + self._lift - quaternion.rotate(world[:, self._hips], below))
 
-    def _legs(self, hips: Vectors, world: Quaternions) -> _Legs:
+    def _legs(self, hips: Vectors, world: Quaternions) -> Legs:
         shape = (len(world), 2, 3)
         hip = hips[:, None] + _turn(world[:, self._hips, None], self._to_hip, shape)
         knee = hip + _turn(world[:, self._thigh], self._to_knee, shape)
         ankle = knee + _turn(world[:, self._shin], self._to_ankle, shape)
-        return _Legs(hip, knee, ankle, ankle + _turn(world[:, self._foot], self._to_toe, shape))
+        return Legs(hip, knee, ankle, ankle + _turn(world[:, self._foot], self._to_toe, shape))
 
     def _bones(self, part: str, end: str) -> Vectors:
         """Return both sides' ways from a part to the next, `(2, 3)`."""
@@ -195,44 +159,12 @@ class Posing:
         return np.array(ways, np.float32)
 
 
-def _plant(
-    planting: Planting,
-    natural: Vectors,
-    scaled: Vectors,
-    height: float,
-    to_world: Quaternions,
-    planted: Flags,
-    dt: Floats,
-) -> Vectors:
-    """Update what the feet remember and return by how much the hips give way, `(N, 3)`.
-
-    Args:
-        planting: N rows; updated.
-        natural: `(N, 2, 3)` toes as the limbs' directions have them.
-        scaled: `(N, 2, 3)` the reference's toes in the rig's size.
-        height: Of the rig's toes over those, both on the ground.
-        to_world: `(N, 2, 4)` rotation of the root.
-        planted: `(N, 2)`.
-        dt: `(N,)` seconds.
-    """
-    passed = dt[:, None, None]
-    to_root = quaternion.conjugate(to_world)
-    apart = scaled + quaternion.rotate(to_root, planting.aside) - natural
-    share = planting.share[..., None]
-    shift = (share * apart).sum(axis=1) / np.maximum(share.sum(axis=1), 1.0)
-    released = planting.correction * (1.0 - damper_fraction(_RELEASE_HALFLIFE, passed))
-    lands = (planted & ~planting.planted)[..., None]
-    came_down = (natural + shift[:, None] + released - scaled).astype(np.float32)
-    aside = np.where(lands, quaternion.rotate(to_world, came_down), planting.aside)
-    apart = scaled + quaternion.rotate(to_root, aside) - natural
-    planting.correction[...] = np.where(planted[..., None], apart - shift[:, None], released)
-    fraction = damper_fraction(_SETTLE_HALFLIFE, passed[..., 0])
-    aside[..., 1] += np.where(planted, fraction * (height - aside[..., 1]), 0.0)
-    planting.aside[...] = aside
-    giving = damper_fraction(_GIVING_HALFLIFE, passed[..., 0])
-    planting.share[...] += (planted - planting.share) * giving
-    planting.planted[...] = planted
-    return np.asarray(shift, np.float32)
+def _slightly(before: Quaternions, after: Quaternions) -> Quaternions:
+    """Turn limbs no further than `_LIMB_TURN`."""
+    cosine = np.abs(np.sum(before * after, axis=-1))
+    angle = 2.0 * np.arccos(np.minimum(cosine, 1.0))
+    share = np.minimum(1.0, _LIMB_TURN / np.maximum(angle, 1e-6))
+    return np.asarray(quaternion.nlerp(before, after, share), np.float32)
 
 
 def _turn(rotation: Quaternions, bone: Vectors, shape: tuple[int, ...]) -> Vectors:

@@ -74,8 +74,14 @@ class Rig:
 
     @cached_property
     def scale(self) -> float:
-        """Size of the legs in those of the reference."""
-        return self.leg_length / _reference_leg_length()
+        """Size of the legs in those of the reference, with the feet that strides roll over."""
+        legs, feet = self.leg_length, 0.0
+        reference_legs, reference_feet = _reference_leg_length(), 0.0
+        if {"LeftToe", "RightToe"} <= set(self.parts):
+            bones = [self.bone(f"{side}Foot", f"{side}Toe") for side in SIDES]
+            feet = float(np.linalg.norm(bones, axis=-1).mean())
+            reference_feet = float(np.linalg.norm(REFERENCE.offsets[REFERENCE.index("LeftToe")]))
+        return (legs + feet) / (reference_legs + reference_feet)
 
     @cached_property
     def up(self) -> Vectors:

@@ -13,7 +13,8 @@ from stridewire._errors import InvalidRequestError, Violation
 from stridewire._messages import Open, PoseFormat
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire.motion.skeleton import Skeleton
-from stridewire_engine.rigs.posing import Planting, Posing
+from stridewire_engine.rigs.planting import Planting
+from stridewire_engine.rigs.posing import Posing
 from stridewire_engine.rigs.rig import Rig, RigError, rig_of
 from stridewire_engine.runtime.tick import Block
 
@@ -92,8 +93,15 @@ class Output:
     ) -> Shown:
         planting = self._rows(ids)
         passed = np.full(len(ids), dt)
-        turn = shown.root[:, 3:]
-        posed = posing.pose(shown.hips, shown.rotations, turn, contacts[:, 1::2], passed, planting)
+        posed = posing.pose(
+            shown.hips,
+            shown.rotations,
+            shown.root,
+            contacts[:, 1::2],
+            shown.foot_targets,
+            passed,
+            planting,
+        )
         own = (scales / self._scale).astype(np.float32)
         sized = _sized(shown._replace(hips=posed.hips, rotations=posed.rotations), scales, own)
         return sized._replace(foot_targets=sized.foot_targets + own[:, None, None] * posed.aside)
