@@ -40,6 +40,16 @@ def grpcurl(address: str, *arguments: str, data: str | None = None) -> str:
     return _run([str(binary("grpcurl")), "-plaintext", *sent, address, *arguments], data)
 
 
+def grpcurl_refusal(address: str, method: str, data: str) -> str:
+    """Run grpcurl for a call that fails and return what it says."""
+    command = [str(binary("grpcurl")), "-plaintext", "-d", "@", address, method]
+    done = subprocess.run(
+        command, input=data, capture_output=True, text=True, check=False, timeout=60.0
+    )
+    assert done.returncode != 0, done.stdout
+    return done.stderr
+
+
 def buf_curl(address: str, method: str, data: str) -> str:
     """Run `buf curl` by the server's reflection and return what it prints."""
     command = [str(binary("buf")), "curl", "--http2-prior-knowledge", "--protocol", "grpc"]
@@ -51,6 +61,12 @@ def node_example(address: str, seconds: float) -> dict[str, Any]:
     command = [str(binary("node")), str(NODE_EXAMPLE / "stream.mjs"), address, str(seconds)]
     found: dict[str, Any] = json.loads(_run(command, None))
     return found
+
+
+def node_script(text: str) -> str:
+    """Run a module beside the example's packages and return what it prints."""
+    command = [str(binary("node")), "--input-type=module", "--eval", text]
+    return _run(command, None, NODE_EXAMPLE)
 
 
 def validate_gltf(path: Path) -> dict[str, Any]:
@@ -72,9 +88,9 @@ def objects(text: str) -> list[Any]:
     return found
 
 
-def _run(command: list[str], data: str | None) -> str:
+def _run(command: list[str], data: str | None, folder: Path | None = None) -> str:
     done = subprocess.run(
-        command, input=data, capture_output=True, text=True, check=False, timeout=60.0
+        command, input=data, capture_output=True, text=True, check=False, timeout=60.0, cwd=folder
     )
     assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}\n{done.stderr}"
     return done.stdout

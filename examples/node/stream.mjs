@@ -10,7 +10,7 @@ import protoLoader from "@grpc/proto-loader";
 
 const [address = "127.0.0.1:50051", seconds = "5"] = process.argv.slice(2);
 const protos = path.join(path.dirname(fileURLToPath(import.meta.url)), "../../proto");
-const files = ["animation", "match", "library"].map((name) => `stridewire/v1/${name}.proto`);
+const files = ["animation", "match", "library", "blend"].map((name) => `stridewire/v1/${name}.proto`);
 const definition = protoLoader.loadSync(files, {
   includeDirs: [protos],
   keepCase: true,
@@ -30,7 +30,8 @@ function ask(client, method, request = {}) {
 }
 
 async function askEverything() {
-  const [server, library, match] = ["ServerService", "LibraryService", "MatchService"].map(stub);
+  const services = ["ServerService", "LibraryService", "MatchService", "BlendService"].map(stub);
+  const [server, library, match, blend] = services;
   const info = await ask(server, "GetInfo");
   const { libraries } = await ask(library, "ListLibraries");
   const details = await ask(library, "GetLibrary");
@@ -40,7 +41,10 @@ async function askEverything() {
   const { skeleton } = await ask(library, "GetSkeleton");
   const pose = { clip: { clip: clips[0].name, time_s: 0.25 } };
   const search = await ask(match, "Search", { pose, motion: { velocity_z: 1.3 }, k: 3 });
-  for (const client of [server, library, match]) client.close();
+  const pair = { start: pose, end: { clip: { ...pose.clip, time_s: 0.5 } }, weights: [0, 0.5, 1] };
+  const { poses } = await ask(blend, "Blend", pair);
+  const { responses } = await ask(blend, "BlendMany", { requests: [pair, pair] });
+  for (const client of services) client.close();
   return {
     GetInfo: info.version,
     ListLibraries: libraries.length,
@@ -49,6 +53,8 @@ async function askEverything() {
     GetClip: clip.poses.frames,
     GetSkeleton: skeleton.joints.length,
     Search: search.matches.length,
+    Blend: poses.frames,
+    BlendMany: responses.length,
   };
 }
 

@@ -6,12 +6,7 @@ import grpc
 import pytest
 
 from serving import opening, stepping
-from stridewire.v1 import (
-    animation_pb2,
-    pose_pb2,
-    stitch_pb2,
-    stitch_pb2_grpc,
-)
+from stridewire.v1 import animation_pb2, pose_pb2
 from stridewire.v1 import animation_pb2 as pb
 
 Call = Callable[..., list[pb.AnimateResponse]]
@@ -62,16 +57,6 @@ def test_sparse_controls_of_a_step(raw_stream: Call, field: str) -> None:
     assert violation.field == f"step.sparse[0].{field}"
     assert "not implemented yet" in violation.description
     assert responses[2].frame.applied_step == 1
-
-
-def test_services_of_later_versions(address: str) -> None:
-    """Stitch is there and says that it is not implemented yet."""
-    with grpc.insecure_channel(address) as channel:
-        stitch = stitch_pb2_grpc.StitchServiceStub(channel)
-        with pytest.raises(grpc.RpcError) as raised:
-            list(stitch.Stitch(stitch_pb2.StitchRequest(), timeout=10.0))
-        assert raised.value.code() is grpc.StatusCode.UNIMPLEMENTED
-        assert "Stitch is not implemented yet" in raised.value.details()
 
 
 def test_all_other_fields_work(raw_stream: Call) -> None:

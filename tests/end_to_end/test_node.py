@@ -12,9 +12,10 @@ def test_node_asks_and_streams(serve: Serve) -> None:
     found = node_example(serve(), SECONDS)
     assert set(found["answers"]) == {
         *("GetInfo", "ListLibraries", "GetLibrary", "ListClips", "GetClip", "GetSkeleton"),
-        "Search",
+        *("Search", "Blend", "BlendMany"),
     }
     assert all(found["answers"].values())
+    assert (found["answers"]["Blend"], found["answers"]["BlendMany"]) == (3, 2)
     # a machine that stalls lets frames go, which the newest then stands for
     assert 0.8 * 60.0 * SECONDS <= found["frames"] <= 60.0 * SECONDS
     assert found["joints"] == 22

@@ -114,3 +114,13 @@ def test_a_blend_is_pasted(address: str, curl: Curl, small_library: Library) -> 
     referred = [{"clip": {"clip": name, "time_s": time_s}} for time_s in (0.5, 1.0)]
     by_reference = blend(*referred)
     assert by_reference == pytest.approx(blend(moment(0.5), moment(1.0)), abs=1e-4)
+
+
+def test_many_blends_are_one_call(address: str, curl: Curl, small_library: Library) -> None:
+    """BlendMany answers each pair in order."""
+    name = small_library.clips[3].name
+    start, end = ({"clip": {"clip": name, "time_s": time_s}} for time_s in (0.5, 1.0))
+    pairs = [{"start": start, "end": end, "weights": [0.5] * count} for count in (1, 3)]
+    answer = curl(address, "stridewire.v1.BlendService/BlendMany", json.dumps({"requests": pairs}))
+    frames = [response["poses"]["frames"] for response in json.loads(answer)["responses"]]
+    assert frames == [1, 3]

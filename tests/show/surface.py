@@ -17,6 +17,7 @@ from xml.etree import ElementTree
 
 import grpc
 from capture import capture
+from grpc_reflection.v1alpha import reflection_pb2, reflection_pb2_grpc
 from hypothesis import HealthCheck, given, settings
 from points import ROOT, Point, show
 from rig_figures import measure, real_rigs
@@ -25,15 +26,17 @@ from sessions import assert_alike, hostile_ends, hostile_in_stream, plans, play
 from stridewire import Client
 from stridewire.testing import serve
 from stridewire.v1 import animation_pb2 as pb
-from stridewire.v1 import library_pb2, match_pb2
+from stridewire.v1 import blend_pb2, library_pb2, match_pb2, stitch_pb2
 from stridewire.v1.animation_pb2_grpc import AnimationServiceStub
 
 ONE = "tests/integration/test_one_interface.py::"
 SAME = "tests/integration/test_same_in_process.py::"
 CURL = "tests/integration/test_grpcurl.py::"
+BLEND = "tests/integration/test_blend.py::"
+LATER = "tests/contract/test_services_of_later_versions.py::"
 NODE = "tests/end_to_end/test_node.py::test_node_asks_and_streams"
 QUERIES = f"{CURL}test_every_query_is_a_one_liner[grpcurl]"
-SCRIPTED = f"{CURL}test_a_scripted_session_comes_from_a_file[grpcurl]"
+WAYS = ("blocking", "asyncio", "in process", "grpcurl", "Node")
 
 BY_CLIENTS = {
     "Animate": f"{SAME}test_frames_are_the_same[{{way}}-follow_a_script-2]",
@@ -44,34 +47,54 @@ BY_CLIENTS = {
     "ListClips": f"{ONE}test_clips_are_listed_over_all_pages[{{way}}]",
     "GetClip": f"{ONE}test_a_clip_comes_as_a_clip[{{way}}]",
     "GetSkeleton": f"{ONE}test_the_skeleton_is_the_librarys[{{way}}]",
+    "Blend": f"{BLEND}test_references_and_poses_are_the_same[{{way}}]",
+    "BlendMany": f"{BLEND}test_many_are_each[{{way}}]",
+    "Stitch": f"{LATER}test_stitch_is_not_implemented_yet[{{way}}]",
 }
 """Which test has which method, for each kind of client."""
+BY_GRPCURL = {
+    "Animate": f"{CURL}test_a_scripted_session_comes_from_a_file[grpcurl]",
+    "Blend": f"{CURL}test_a_blend_is_pasted[grpcurl]",
+    "BlendMany": f"{CURL}test_many_blends_are_one_call[grpcurl]",
+    "Stitch": BY_CLIENTS["Stitch"].format(way="grpcurl"),
+}
+"""Which test has which method by grpcurl, where it is not that of all queries."""
+BY_NODE = {"Stitch": BY_CLIENTS["Stitch"].format(way="Node")}
+"""Which test has which method by Node, where it is not the example's."""
 
 
 def methods() -> Iterator[Point]:
     """Each RPC by blocking, asyncio, in process, grpcurl and Node, with the test's name."""
-    services = [
-        *animation_services(),
-        *match_pb2.DESCRIPTOR.services_by_name.values(),
-        *library_pb2.DESCRIPTOR.services_by_name.values(),
-    ]
+    files = (pb, match_pb2, library_pb2, blend_pb2, stitch_pb2)
+    services = [s for file in files for s in file.DESCRIPTOR.services_by_name.values()]
+    with _channel() as channel:
+        served = _served(channel)
+    missing = {service.full_name for service in services} ^ served
+    yield Point("services that are served but not in this table, or the other way round",
+                str(sorted(missing)), "none", not missing)  # fmt: skip
     names = [method.name for service in services for method in service.methods]
     yield Point("RPCs without a row", str(sorted(set(names) - set(BY_CLIENTS))), "none",
                 not set(names) - set(BY_CLIENTS))  # fmt: skip
-    passed = _passed({path.partition("::")[0] for path in (ONE, SAME, CURL, NODE)})
+    passed = _passed({path.partition("::")[0] for path in (ONE, SAME, BLEND, LATER, CURL, NODE)})
     for name in names:
-        cells = {way: BY_CLIENTS[name].format(way=way) for way in ("blocking", "asyncio")}
-        cells["in process"] = BY_CLIENTS[name].format(way="in process")
-        cells["grpcurl"] = SCRIPTED if name == "Animate" else QUERIES
-        cells["Node"] = NODE
+        cells = {way: BY_CLIENTS[name].format(way=way) for way in WAYS[:3]}
+        cells["grpcurl"] = BY_GRPCURL.get(name, QUERIES)
+        cells["Node"] = BY_NODE.get(name, NODE)
+        says = ", which pins UNIMPLEMENTED" if LATER in BY_CLIENTS[name] else ""
         for way, test in cells.items():
             outcome = passed.get(test.rpartition("/")[2], "absent")
-            yield Point(f"{name} by {way}", f"{test}: {outcome}", "a test", outcome == "passed")
+            yield Point(f"{name} by {way}", f"{test}{says}: {outcome}", "a test",
+                        outcome == "passed")  # fmt: skip
 
 
-def animation_services() -> list[Any]:
-    """Return the services of the stream's file."""
-    return list(pb.DESCRIPTOR.services_by_name.values())
+def _served(channel: grpc.Channel) -> set[str]:
+    """Return the services of ours that a server's reflection lists."""
+    request = reflection_pb2.ServerReflectionRequest(list_services="")
+    (answer,) = reflection_pb2_grpc.ServerReflectionStub(channel).ServerReflectionInfo(
+        iter([request]), timeout=60.0
+    )
+    names = {service.name for service in answer.list_services_response.service}
+    return {name for name in names if name.startswith("stridewire.")}
 
 
 def _passed(files: set[str]) -> dict[str, str]:
