@@ -34,7 +34,7 @@ SAME = "tests/integration/test_same_in_process.py::"
 CURL = "tests/integration/test_grpcurl.py::"
 BLEND = "tests/integration/test_blend.py::"
 LATER = "tests/contract/test_services_of_later_versions.py::"
-NODE = "tests/end_to_end/test_node.py::test_node_asks_and_streams"
+NODE = "tests/end_to_end/test_node.py::"
 QUERIES = f"{CURL}test_every_query_is_a_one_liner[grpcurl]"
 WAYS = ("blocking", "asyncio", "in process", "grpcurl", "Node")
 
@@ -59,8 +59,11 @@ BY_GRPCURL = {
     "Stitch": BY_CLIENTS["Stitch"].format(way="grpcurl"),
 }
 """Which test has which method by grpcurl, where it is not that of all queries."""
-BY_NODE = {"Stitch": BY_CLIENTS["Stitch"].format(way="Node")}
-"""Which test has which method by Node, where it is not the example's."""
+BY_NODE = {
+    "Animate": f"{NODE}test_node_streams",
+    "Stitch": BY_CLIENTS["Stitch"].format(way="Node"),
+}
+"""Which test has which method by Node, where it is not that of all queries."""
 
 
 def methods() -> Iterator[Point]:
@@ -79,7 +82,7 @@ def methods() -> Iterator[Point]:
     for name in names:
         cells = {way: BY_CLIENTS[name].format(way=way) for way in WAYS[:3]}
         cells["grpcurl"] = BY_GRPCURL.get(name, QUERIES)
-        cells["Node"] = BY_NODE.get(name, NODE)
+        cells["Node"] = BY_NODE.get(name, f"{NODE}test_node_asks")
         says = ", which pins UNIMPLEMENTED" if LATER in BY_CLIENTS[name] else ""
         for way, test in cells.items():
             outcome = passed.get(test.rpartition("/")[2], "absent")
