@@ -36,11 +36,10 @@ def clip_in_centimetres(clip: Clip, path: Path) -> SourceMotion:
     rotations = clip.pose.rotations.astype(np.float64)
     rotations[:, 0] = turn
     skeleton = clip.skeleton.scaled(CENTIMETRES)
-    leaves = set(range(len(skeleton))) - set(skeleton.parents)
     return SourceMotion(
         path=path,
         skeleton=skeleton,
-        tips={joint: CENTIMETRES * _tip(clip.skeleton, joint) for joint in leaves},
+        tips={j: CENTIMETRES * tip for j, tip in leaf_tips(clip.skeleton).items()},
         frame_rate=clip.frame_rate,
         root_positions=hips.astype(np.float64) * CENTIMETRES,
         rotations=rotations,
@@ -103,8 +102,14 @@ def _joint(motion: SourceMotion, joint: int, indent: str) -> list[str]:
     return [*lines, f"{indent}}}"]
 
 
+def leaf_tips(skeleton: Skeleton) -> dict[int, Vectors]:
+    """Return where last bones end, by their joint; metres: tools that draw bones need lengths."""
+    leaves = set(range(len(skeleton))) - set(skeleton.parents)
+    return {joint: _tip(skeleton, joint) for joint in sorted(leaves)}
+
+
 def _tip(skeleton: Skeleton, joint: int) -> Vectors:
-    """Return where a last bone ends; tools that draw bones need a length."""
+    """Return a last bone by its name and its offset."""
     if skeleton.names[joint] == "Head":
         return np.array([0.0, HEAD_TOP, 0.0])
     offset = skeleton.offsets[joint]

@@ -46,16 +46,13 @@ class ArrayWriter:
         self._parts: list[bytes] = []
         self._length = 0
 
-    def add(
-        self, values: Any, *, target: int | None = None, bounds: bool = False, unit: bool = False
-    ) -> int:
+    def add(self, values: Any, *, target: int | None = None, bounds: bool = False) -> int:
         """Add an array `(N,)` or `(N, width)` and return the index of its accessor.
 
         Args:
             values: Of a type that glTF knows.
             target: `ARRAY_BUFFER` or `ELEMENT_ARRAY_BUFFER` for what a GPU draws.
             bounds: Note the least and the largest values, where glTF demands them.
-            unit: Whether integers stand for 0 to 1.
         """
         array = np.ascontiguousarray(values)
         rows = array.reshape(len(array), -1)
@@ -68,7 +65,6 @@ class ArrayWriter:
             self._gltf.Accessor(
                 bufferView=len(self._document.bufferViews) - 1,
                 componentType=code,
-                normalized=unit,
                 count=len(rows),
                 type=_KINDS[rows.shape[1]],
                 min=rows.min(axis=0).tolist() if bounds else None,

@@ -3,6 +3,7 @@
 Metres. A vertex follows one joint: round ends meet at the joints, so that nothing gapes.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,7 +50,7 @@ class _Capsule:
     """`(3,)` unit: the direction in which it is stretched; None where it is round."""
 
 
-def figure(skeleton: Skeleton, rest: Vectors, tips: dict[int, Vectors]) -> list[Surface]:
+def figure(skeleton: Skeleton, rest: Vectors, tips: Mapping[int, Vectors]) -> list[Surface]:
     """Return a body for a skeleton, a surface for each side: left, middle, right.
 
     Args:
@@ -62,7 +63,7 @@ def figure(skeleton: Skeleton, rest: Vectors, tips: dict[int, Vectors]) -> list[
     return [_surface(side_colour(side), part) for side, part in by_side.items() if part]
 
 
-def _bones(skeleton: Skeleton, rest: Vectors, tips: dict[int, Vectors]) -> list[_Capsule]:
+def _bones(skeleton: Skeleton, rest: Vectors, tips: Mapping[int, Vectors]) -> list[_Capsule]:
     """Return a capsule for each bone, of the side of its lower joint."""
     size, sides = longest_chain(skeleton), joint_sides(skeleton.names)
     trunk, head = trunk_joints(skeleton.parents, sides), head_joint(skeleton.names)
@@ -96,7 +97,7 @@ def _across(rest: Vectors, sides: Indices) -> Vectors | None:
     return np.asarray(way / max(float(np.linalg.norm(way)), 1e-9))
 
 
-def _head(skeleton: Skeleton, rest: Vectors, tips: dict[int, Vectors]) -> list[_Capsule]:
+def _head(skeleton: Skeleton, rest: Vectors, tips: Mapping[int, Vectors]) -> list[_Capsule]:
     """Return a ball that goes on where the neck, or the head's end site, points."""
     joint = head_joint(skeleton.names)
     if joint is None:

@@ -77,7 +77,7 @@ def _parents(path: Path, document: Any) -> dict[int, int]:
                 raise FormatError(path, f"node {child} has two parents or does not exist")
             parent[child] = index
     for node in range(len(document.nodes)):
-        if len(_above(node, parent)) >= len(document.nodes):
+        if node in _above(node, parent):
             raise FormatError(path, f"node {node} is below itself")
     return parent
 

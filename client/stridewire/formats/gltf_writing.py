@@ -5,12 +5,14 @@ translation and the rotations of all have keys at every frame. Where end sites a
 offsets stand in the `extras` of their joint's node.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from stridewire._version import __version__
+from stridewire.formats.bvh_writing import leaf_tips
 from stridewire.formats.conversion import scaled
 from stridewire.formats.gltf_arrays import ArrayWriter, library
 from stridewire.formats.gltf_figure import Surface, figure
@@ -18,6 +20,7 @@ from stridewire.formats.source_motion import SourceMotion
 from stridewire.formats.units import likely_unit
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Floats, Vectors
+from stridewire.motion.skeleton import Skeleton
 
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
 _SCALAR_LAST = [1, 2, 3, 0]
@@ -38,38 +41,68 @@ def write_glb(path: Path | str, motion: SourceMotion) -> None:
     if motion.frame_rate is None:
         raise ValueError(f"{motion.path} says no frame rate; give one")
     motion = scaled(motion, motion.metres_per_unit or likely_unit(motion.skeleton))
+    _write(path, motion.name, motion.skeleton, motion.tips, motion)
+
+
+def write_body(path: Path | str, skeleton: Skeleton) -> None:
+    """Write a body that stands still, for an engine that moves its joints itself.
+
+    Args:
+        path: Of the `.glb`.
+        skeleton: Such as `session.opened.skeleton`; metres.
+
+    Raises:
+        StridewireError: If pygltflib is not installed.
+        OSError: If the file cannot be written.
+    """
+    _write(path, "Character", skeleton, leaf_tips(skeleton), None)
+
+
+def _write(
+    path: Path | str,
+    name: str,
+    skeleton: Skeleton,
+    tips: Mapping[int, Vectors],
+    motion: SourceMotion | None,
+) -> None:
     gltf = library()
     document = gltf.GLTF2(asset=gltf.Asset(generator=f"stridewire {__version__}"))
     arrays = ArrayWriter(document)
-    rest = _at_rest(motion)
-    _nodes(document, motion)
+    rest = _at_rest(skeleton)
+    _nodes(document, name, skeleton, tips)
     _skin(document, arrays, rest)
-    _mesh(document, arrays, figure(motion.skeleton, rest, dict(motion.tips)))
-    _animation(document, arrays, motion)
+    _mesh(document, arrays, figure(skeleton, rest, tips))
+    if motion is not None:
+        _animation(document, arrays, motion)
     arrays.finish()
     Path(path).write_bytes(b"".join(document.save_to_bytes()))
 
 
-def _at_rest(motion: SourceMotion) -> Vectors:
+def _at_rest(skeleton: Skeleton) -> Vectors:
     """Return `(J, 3)` the joints where all local rotations are zero."""
-    rest = motion.skeleton.offsets.copy()
-    for joint, parent in enumerate(motion.skeleton.parents[1:], start=1):
+    rest = skeleton.offsets.copy()
+    for joint, parent in enumerate(skeleton.parents[1:], start=1):
         rest[joint] += rest[parent]
     return rest
 
 
-def _nodes(document: Any, motion: SourceMotion) -> None:
-    """Add a node for each joint, in order, and after them one for the body."""
-    gltf, skeleton = library(), motion.skeleton
-    for joint, name in enumerate(skeleton.names):
+def _nodes(document: Any, name: str, skeleton: Skeleton, tips: Mapping[int, Vectors]) -> None:
+    """Add a node for each joint, in order, after them the body, and one above all.
+
+    The body is no root, which the Khronos validator would rather have: Panda3D takes a skin
+    for a character only where both are below one node, as Blender writes them.
+    """
+    gltf = library()
+    for joint, joint_name in enumerate(skeleton.names):
         children = [child for child, parent in enumerate(skeleton.parents) if parent == joint]
-        node = gltf.Node(name=name, children=children)
+        node = gltf.Node(name=joint_name, children=children)
         node.translation = skeleton.offsets[joint].tolist()
-        if joint in motion.tips:
-            node.extras = {"end_site": np.asarray(motion.tips[joint], np.float64).tolist()}
+        if joint in tips:
+            node.extras = {"end_site": np.asarray(tips[joint], np.float64).tolist()}
         document.nodes.append(node)
     document.nodes.append(gltf.Node(name="Body", mesh=0, skin=0))
-    document.scenes.append(gltf.Scene(name=motion.name, nodes=[0, len(skeleton)]))
+    document.nodes.append(gltf.Node(name="Armature", children=[0, len(skeleton)]))
+    document.scenes.append(gltf.Scene(name=name, nodes=[len(skeleton) + 1]))
     document.scene = 0
 
 
@@ -78,7 +111,7 @@ def _skin(document: Any, arrays: ArrayWriter, rest: Vectors) -> None:
     inverse[:, 3, :3] = -rest  # column-major
     accessor = arrays.add(inverse.reshape(-1, 16))
     joints = list(range(len(rest)))
-    skin = library().Skin(inverseBindMatrices=accessor, joints=joints, skeleton=0)
+    skin = library().Skin(inverseBindMatrices=accessor, joints=joints, skeleton=len(rest) + 1)
     document.skins.append(skin)
 
 
@@ -88,13 +121,13 @@ def _mesh(document: Any, arrays: ArrayWriter, surfaces: list[Surface]) -> None:
     for number, surface in enumerate(surfaces):
         followed = np.zeros((len(surface.joints), 4), np.uint16)
         followed[:, 0] = surface.joints
-        weights = np.zeros((len(surface.joints), 4), np.uint8)
-        weights[:, 0] = 255
+        weights = np.zeros((len(surface.joints), 4), np.float32)
+        weights[:, 0] = 1.0  # as bytes, which glTF allows, Panda3D takes them for 255
         attributes = gltf.Attributes(
             POSITION=arrays.add(surface.positions, target=_ARRAY_BUFFER, bounds=True),
             NORMAL=arrays.add(surface.normals, target=_ARRAY_BUFFER),
             JOINTS_0=arrays.add(followed, target=_ARRAY_BUFFER),
-            WEIGHTS_0=arrays.add(weights, target=_ARRAY_BUFFER, unit=True),
+            WEIGHTS_0=arrays.add(weights, target=_ARRAY_BUFFER),
         )
         corners = surface.triangles.reshape(-1)
         if len(surface.positions) < np.iinfo(np.uint16).max:
