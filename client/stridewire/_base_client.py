@@ -4,16 +4,25 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from stridewire._errors import ProtocolError
 from stridewire._messages import (
+    BvhText,
     CharacterSpec,
     ClipPoses,
+    ClipSpan,
     ClipTime,
     DesiredMotion,
     Detail,
     Open,
     Pacing,
     PoseFormat,
+    RootPath,
     SearchQuery,
+    Stitched,
+    StitchHeader,
+    StitchPart,
+    StitchQuery,
+    StitchReport,
     Trajectory,
 )
 from stridewire.motion.clip import Clip, Pose, TagSpan
@@ -92,3 +101,42 @@ def to_clip(poses: ClipPoses, skeleton: Skeleton, start_s: float) -> Clip:
         tuple(tag for tag in tags if tag.start < tag.end),
         poses.clip.source,
     )
+
+
+def stitch_query(
+    clips: Sequence[str | ClipSpan | Clip | BvhText],
+    *,
+    stitcher: str,
+    window_s: float,
+    search_frames: int,
+    strength: float,
+    joint_mask: Mapping[str, float] | None,
+    path: RootPath | None,
+) -> StitchQuery:
+    """Return the message that stitches."""
+    return StitchQuery(
+        tuple(ClipSpan(clip) if isinstance(clip, str) else clip for clip in clips),
+        stitcher,
+        window_s,
+        search_frames=search_frames,
+        strength=strength,
+        joint_mask=joint_mask or {},
+        path=path,
+    )
+
+
+def stitched(parts: Sequence[StitchPart]) -> Stitched:
+    """Return the motion that parts make; of contacts an answer tells nothing.
+
+    Raises:
+        ProtocolError: If the answer broke off.
+    """
+    header, *poses, report = parts
+    if not isinstance(header, StitchHeader) or not isinstance(report, StitchReport):
+        raise ProtocolError("the answer has no header or no report; ask again")
+    pose = Pose.concatenate(part for part in poses if isinstance(part, Pose))
+    nowhere = np.zeros((header.frames, 4), np.bool_)
+    clip = Clip(
+        "stitched", header.skeleton, header.frame_rate_hz, pose, nowhere, source="stitching"
+    )
+    return Stitched(clip, report)

@@ -8,7 +8,7 @@ import grpc
 from stridewire._codec.calls import Call
 from stridewire._codec.status import DETAILS_KEY, decode_error
 from stridewire._errors import InvalidRequestError, StridewireError
-from stridewire._messages import Query
+from stridewire._messages import PartsQuery, Query
 
 _RETRIES = {
     "methodConfig": [
@@ -41,9 +41,11 @@ CHANNEL_OPTIONS: list[tuple[str, Any]] = [
     ("grpc.max_receive_message_length", 8 << 20),
 ]
 """Options of a channel to a server."""
+PARTS_TIMEOUT_S = 600.0
+"""Longest time that the whole of an answer in parts may take."""
 
 
-def encode_query(call: Call, query: Query[Any]) -> bytes:
+def encode_query(call: Call, query: Query[Any] | PartsQuery[Any]) -> bytes:
     """Return the bytes of a query's request.
 
     Raises:

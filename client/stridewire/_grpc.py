@@ -3,13 +3,13 @@
 import queue
 import threading
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import grpc
 
-from stridewire._channel import CHANNEL_OPTIONS, encode_query, rpc_error
-from stridewire._codec.calls import CALL_BY_QUERY
+from stridewire._channel import CHANNEL_OPTIONS, PARTS_TIMEOUT_S, encode_query, rpc_error
+from stridewire._codec.calls import CALL_BY_PARTS_QUERY, CALL_BY_QUERY
 from stridewire._codec.requests import encode_request
 from stridewire._codec.responses import decode_response
 from stridewire._errors import ProtocolError, StridewireError
@@ -20,6 +20,8 @@ from stridewire._messages import (
     Edit,
     Open,
     Opened,
+    PartsQuery,
+    PartT,
     Query,
     ServerMessage,
     Step,
@@ -62,6 +64,19 @@ class GrpcTransport:
             raise rpc_error(error, self._address) from error
         answer: AnswerT = call.deserialize(data)
         return answer
+
+    def parts(self, query: PartsQuery[PartT]) -> Iterator[PartT]:
+        """Answer a query part by part; the call ends when the iterator is closed."""
+        call = CALL_BY_PARTS_QUERY[type(query)]
+        method = self._channel.unary_stream(call.path, bytes, bytes)
+        stream: Any = method(encode_query(call, query), timeout=PARTS_TIMEOUT_S)
+        try:
+            for data in stream:
+                yield call.deserialize(data)
+        except grpc.RpcError as error:
+            raise rpc_error(error, self._address) from error
+        finally:
+            stream.cancel()
 
     def close(self) -> None:
         """End all sessions and close the connection."""

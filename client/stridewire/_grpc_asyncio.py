@@ -2,13 +2,20 @@
 
 import asyncio
 import weakref
+from collections.abc import AsyncIterator
 from typing import Any
 
 import grpc
 from grpc.aio import EOF  # type: ignore[attr-defined]
 
-from stridewire._channel import CHANNEL_OPTIONS, encode_query, rpc_error, to_error
-from stridewire._codec.calls import CALL_BY_QUERY
+from stridewire._channel import (
+    CHANNEL_OPTIONS,
+    PARTS_TIMEOUT_S,
+    encode_query,
+    rpc_error,
+    to_error,
+)
+from stridewire._codec.calls import CALL_BY_PARTS_QUERY, CALL_BY_QUERY
 from stridewire._codec.requests import encode_request
 from stridewire._codec.responses import decode_response
 from stridewire._errors import ProtocolError, StridewireError
@@ -19,6 +26,8 @@ from stridewire._messages import (
     Edit,
     Open,
     Opened,
+    PartsQuery,
+    PartT,
     Query,
     ServerMessage,
     Step,
@@ -61,6 +70,19 @@ class AsyncGrpcTransport:
             raise rpc_error(error, self._address) from error
         answer: AnswerT = call.deserialize(data)
         return answer
+
+    async def parts(self, query: PartsQuery[PartT]) -> AsyncIterator[PartT]:
+        """Answer a query part by part; the call ends when the iterator is closed."""
+        call = CALL_BY_PARTS_QUERY[type(query)]
+        method = self._channel.unary_stream(call.path, bytes, bytes)
+        stream = method(encode_query(call, query), timeout=PARTS_TIMEOUT_S)
+        try:
+            async for data in stream:
+                yield call.deserialize(data)
+        except grpc.RpcError as error:
+            raise rpc_error(error, self._address) from error
+        finally:
+            stream.cancel()
 
     async def close(self) -> None:
         """End all sessions and close the connection."""

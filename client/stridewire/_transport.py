@@ -1,10 +1,21 @@
 """What a client needs of whatever runs the characters: a server, or a runtime in process."""
 
+from collections.abc import AsyncIterator, Iterator
 from importlib.metadata import entry_points
 from typing import Any, Protocol
 
 from stridewire._errors import StridewireError
-from stridewire._messages import AnswerT, Edit, Open, Opened, Query, ServerMessage, Step
+from stridewire._messages import (
+    AnswerT,
+    Edit,
+    Open,
+    Opened,
+    PartsQuery,
+    PartT,
+    Query,
+    ServerMessage,
+    Step,
+)
 
 
 class Stream(Protocol):
@@ -35,6 +46,9 @@ class Transport(Protocol):
 
     def ask(self, query: Query[AnswerT]) -> AnswerT:
         """Answer a query."""
+
+    def parts(self, query: PartsQuery[PartT]) -> Iterator[PartT]:
+        """Answer a query part by part."""
 
     def close(self) -> None:
         """Free what the transport holds; twice is harmless."""
@@ -68,6 +82,9 @@ class AsyncTransport(Protocol):
 
     async def ask(self, query: Query[AnswerT]) -> AnswerT:
         """Answer a query."""
+
+    def parts(self, query: PartsQuery[PartT]) -> AsyncIterator[PartT]:
+        """Answer a query part by part."""
 
     async def close(self) -> None:
         """Free what the transport holds; twice is harmless."""

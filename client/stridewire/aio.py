@@ -7,15 +7,24 @@ from types import TracebackType
 from typing import Any
 
 from stridewire._async_session import AsyncSession
-from stridewire._base_client import DEFAULT_ADDRESS, opening, search_query, to_clip
+from stridewire._base_client import (
+    DEFAULT_ADDRESS,
+    opening,
+    search_query,
+    stitch_query,
+    stitched,
+    to_clip,
+)
 from stridewire._messages import (
     BlendManyQuery,
     BlendMethod,
     BlendQuery,
     BlendResult,
+    BvhText,
     CharacterSpec,
     ClipInfo,
     ClipQuery,
+    ClipSpan,
     ClipsQuery,
     ClipTime,
     DesiredMotion,
@@ -28,9 +37,13 @@ from stridewire._messages import (
     Open,
     Pacing,
     PoseFormat,
+    RootPath,
     SearchResult,
     ServerInfo,
     SkeletonQuery,
+    Stitched,
+    StitchPart,
+    StitchQuery,
     Trajectory,
 )
 from stridewire._transport import AsyncStream, AsyncTransport, async_in_process_transport
@@ -40,7 +53,7 @@ from stridewire.motion.skeleton import Skeleton
 
 
 class AsyncClient:
-    """Opens sessions, asks the motion database, blends postures, reads libraries.
+    """Opens sessions, asks the motion database, blends postures, stitches clips, reads libraries.
 
         async with AsyncClient() as client, client.open_session(characters=4) as session:
             frame = await session.step(velocity=(0.0, 1.4))
@@ -197,6 +210,58 @@ class AsyncClient:
             NotFoundError: If there is no such library or clip.
         """
         return await self._transport.ask(BlendManyQuery(tuple(requests)))
+
+    async def stitch(
+        self,
+        clips: Sequence[str | ClipSpan | Clip | BvhText],
+        *,
+        stitcher: str = "auto",
+        window_s: float = 1.5,
+        search_frames: int = 0,
+        strength: float = 1.0,
+        joint_mask: Mapping[str, float] | None = None,
+        path: RootPath | None = None,
+    ) -> Stitched:
+        """Make one natural motion of clips, each going on where the one before ends.
+
+        Args:
+            clips: 2 to 64: names of clips of the default library, spans of clips, clips of yours,
+                texts of BVH files.
+            stitcher: What hides the seams; `auto` takes the best for each.
+            window_s: Within so many seconds after a seam poses may differ from the clips'.
+            search_frames: Up to so many frames are left out at each end of a clip where the seam
+                gets better; 0 to 60.
+            strength: Share of the correction, 0 to 1.
+            joint_mask: Share of the correction that joints take, 0 to 1, by name; 1 where absent.
+            path: Where the root is to go; None means where the clips lead.
+
+        Raises:
+            InvalidRequestError: If a value is not allowed.
+            NotFoundError: If there is no such library or clip.
+        """
+        query = stitch_query(
+            clips,
+            stitcher=stitcher,
+            window_s=window_s,
+            search_frames=search_frames,
+            strength=strength,
+            joint_mask=joint_mask,
+            path=path,
+        )
+        return stitched([part async for part in self.stitch_parts(query)])
+
+    async def stitch_parts(self, query: StitchQuery) -> AsyncIterator[StitchPart]:
+        """Yield a header, poses as they become final, then a report: for long motions.
+
+        Args:
+            query: All that can be asked for.
+
+        Raises:
+            InvalidRequestError: If a value is not allowed.
+            NotFoundError: If there is no such library or clip.
+        """
+        async for part in self._transport.parts(query):
+            yield part
 
     async def info(self) -> ServerInfo:
         """Tell versions, libraries, limits."""

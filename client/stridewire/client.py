@@ -4,15 +4,24 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from types import TracebackType
 
-from stridewire._base_client import DEFAULT_ADDRESS, opening, search_query, to_clip
+from stridewire._base_client import (
+    DEFAULT_ADDRESS,
+    opening,
+    search_query,
+    stitch_query,
+    stitched,
+    to_clip,
+)
 from stridewire._messages import (
     BlendManyQuery,
     BlendMethod,
     BlendQuery,
     BlendResult,
+    BvhText,
     CharacterSpec,
     ClipInfo,
     ClipQuery,
+    ClipSpan,
     ClipsQuery,
     ClipTime,
     DesiredMotion,
@@ -24,9 +33,13 @@ from stridewire._messages import (
     LibraryQuery,
     Pacing,
     PoseFormat,
+    RootPath,
     SearchResult,
     ServerInfo,
     SkeletonQuery,
+    Stitched,
+    StitchPart,
+    StitchQuery,
     Trajectory,
 )
 from stridewire._session import Session
@@ -37,7 +50,7 @@ from stridewire.motion.skeleton import Skeleton
 
 
 class Client:
-    """Opens sessions, asks the motion database, blends postures, reads libraries.
+    """Opens sessions, asks the motion database, blends postures, stitches clips, reads libraries.
 
         with Client("127.0.0.1:50051") as client, client.open_session(characters=4) as session:
             frame = session.step(velocity=(0.0, 1.4))
@@ -192,6 +205,57 @@ class Client:
             NotFoundError: If there is no such library or clip.
         """
         return self._transport.ask(BlendManyQuery(tuple(requests)))
+
+    def stitch(
+        self,
+        clips: Sequence[str | ClipSpan | Clip | BvhText],
+        *,
+        stitcher: str = "auto",
+        window_s: float = 1.5,
+        search_frames: int = 0,
+        strength: float = 1.0,
+        joint_mask: Mapping[str, float] | None = None,
+        path: RootPath | None = None,
+    ) -> Stitched:
+        """Make one natural motion of clips, each going on where the one before ends.
+
+        Args:
+            clips: 2 to 64: names of clips of the default library, spans of clips, clips of yours,
+                texts of BVH files.
+            stitcher: What hides the seams; `auto` takes the best for each.
+            window_s: Within so many seconds after a seam poses may differ from the clips'.
+            search_frames: Up to so many frames are left out at each end of a clip where the seam
+                gets better; 0 to 60.
+            strength: Share of the correction, 0 to 1.
+            joint_mask: Share of the correction that joints take, 0 to 1, by name; 1 where absent.
+            path: Where the root is to go; None means where the clips lead.
+
+        Raises:
+            InvalidRequestError: If a value is not allowed.
+            NotFoundError: If there is no such library or clip.
+        """
+        query = stitch_query(
+            clips,
+            stitcher=stitcher,
+            window_s=window_s,
+            search_frames=search_frames,
+            strength=strength,
+            joint_mask=joint_mask,
+            path=path,
+        )
+        return stitched([*self.stitch_parts(query)])
+
+    def stitch_parts(self, query: StitchQuery) -> Iterator[StitchPart]:
+        """Yield a header, poses as they become final, then a report: for long motions.
+
+        Args:
+            query: All that can be asked for.
+
+        Raises:
+            InvalidRequestError: If a value is not allowed.
+            NotFoundError: If there is no such library or clip.
+        """
+        yield from self._transport.parts(query)
 
     def info(self) -> ServerInfo:
         """Tell versions, libraries, limits."""

@@ -4,6 +4,7 @@ With client pacing the order of the messages is all that decides, so that any tr
 recorded. A session that a server paces is recorded where its clock is: `stridewire serve --record`.
 """
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from stridewire._errors import ProtocolError
@@ -14,6 +15,8 @@ from stridewire._messages import (
     Open,
     Opened,
     Pacing,
+    PartsQuery,
+    PartT,
     Query,
     ServerMessage,
     Step,
@@ -56,6 +59,10 @@ class RecordingTransport:
     def ask(self, query: Query[AnswerT]) -> AnswerT:
         """Answer a query."""
         return self._transport.ask(query)
+
+    def parts(self, query: PartsQuery[PartT]) -> Iterator[PartT]:
+        """Answer a query part by part."""
+        return self._transport.parts(query)
 
     def close(self) -> None:
         """Free what the transport holds."""

@@ -3,9 +3,9 @@
 import asyncio
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from stridewire._errors import ProtocolError
 from stridewire._messages import (
@@ -14,11 +14,14 @@ from stridewire._messages import (
     Open,
     Opened,
     Pacing,
+    PartsQuery,
+    PartT,
     Query,
     ServerMessage,
     Step,
     StreamError,
 )
+from stridewire_engine.answering import answer_parts
 from stridewire_engine.building import open_library
 from stridewire_engine.runtime import Runtime, Session
 
@@ -44,6 +47,10 @@ class InProcess:
     def ask(self, query: Query[AnswerT]) -> AnswerT:
         """Answer a query."""
         return self.runtime.ask(query)
+
+    def parts(self, query: PartsQuery[PartT]) -> Iterator[PartT]:
+        """Answer a query part by part."""
+        return answer_parts(self.runtime, query)
 
     def close(self) -> None:
         """Do nothing: sessions free themselves."""
@@ -156,6 +163,16 @@ class AsyncInProcess:
             LibraryError: If the folder is no usable library.
         """
         return await self.call(lambda: self._transport().ask(query))
+
+    async def parts(self, query: PartsQuery[PartT]) -> AsyncIterator[PartT]:
+        """Answer a query part by part.
+
+        Raises:
+            LibraryError: If the folder is no usable library.
+        """
+        parts: Iterator[Any] = await self.call(lambda: self._transport().parts(query))
+        while (part := await self.call(next, parts, None)) is not None:
+            yield part
 
     async def close(self) -> None:
         """End the thread; sessions free themselves."""

@@ -23,9 +23,9 @@ from stridewire_server.interceptors import ErrorInterceptor
 from stridewire_server.services.about import ServerService
 from stridewire_server.services.animation import AnimationService
 from stridewire_server.services.blend import BlendService
-from stridewire_server.services.later import StitchService
 from stridewire_server.services.library import LibraryService
 from stridewire_server.services.match import MatchService
+from stridewire_server.services.stitch import StitchService
 from stridewire_server.settings import ServerSettings
 from stridewire_server.streaming.sessions import Sessions
 from stridewire_server.ticker import Ticker
@@ -40,8 +40,8 @@ _READY = (
     blend_pb2.DESCRIPTOR.services_by_name["BlendService"].full_name,
     library_pb2.DESCRIPTOR.services_by_name["LibraryService"].full_name,
     library_pb2.DESCRIPTOR.services_by_name["ServerService"].full_name,
+    stitch_pb2.DESCRIPTOR.services_by_name["StitchService"].full_name,
 )
-_LATER = (stitch_pb2.DESCRIPTOR.services_by_name["StitchService"].full_name,)
 
 
 class AnimationServer:
@@ -59,9 +59,11 @@ class AnimationServer:
         self._settings = settings
         self._ticker = Ticker(runtime)
         self._sessions = Sessions(self._ticker, settings)
+        self._stitch = StitchService(runtime)
         self._health = health.aio.HealthServicer()  # type: ignore[attr-defined]
         self._server = grpc.aio.server(
-            interceptors=[ErrorInterceptor()], options=settings.channel_options(runtime.limits)
+            interceptors=[ErrorInterceptor(runtime.limits)],
+            options=settings.channel_options(runtime.limits),
         )
         self._door: WebSocketDoor | None = None
         if settings.websocket:
@@ -94,6 +96,7 @@ class AnimationServer:
         await self._server.stop(grace=_GRACE_S)
         await self._sessions.wait_until_empty(_GRACE_S)
         self._ticker.shut_down()
+        self._stitch.shut_down()
 
     async def wait(self) -> None:
         """Wait until the server has stopped."""
@@ -102,7 +105,7 @@ class AnimationServer:
     def _register(self) -> None:
         server, ticker = self._server, self._ticker
         animation_pb2_grpc.add_AnimationServiceServicer_to_server(
-            AnimationService(self._sessions), server
+            AnimationService(self._sessions, ticker.runtime.limits), server
         )
         match_pb2_grpc.add_MatchServiceServicer_to_server(MatchService(ticker), server)
         library_pb2_grpc.add_LibraryServiceServicer_to_server(
@@ -110,10 +113,10 @@ class AnimationServer:
         )
         library_pb2_grpc.add_ServerServiceServicer_to_server(ServerService(ticker), server)
         blend_pb2_grpc.add_BlendServiceServicer_to_server(BlendService(ticker), server)
-        stitch_pb2_grpc.add_StitchServiceServicer_to_server(StitchService(), server)
+        stitch_pb2_grpc.add_StitchServiceServicer_to_server(self._stitch, server)
         health_pb2_grpc.add_HealthServicer_to_server(self._health, server)
         health_name = health_pb2.DESCRIPTOR.services_by_name["Health"].full_name
-        names = (*_READY, *_LATER, health_name, reflection.SERVICE_NAME)
+        names = (*_READY, health_name, reflection.SERVICE_NAME)
         reflection.enable_server_reflection(names, server)
 
     def _bind(self) -> str:
@@ -127,11 +130,9 @@ class AnimationServer:
         return address if address.startswith("unix:") else f"{address.rpartition(':')[0]}:{port}"
 
     async def _set_health(self, status: int) -> None:
-        """Set the health of the server and of what it offers; what comes later is never healthy."""
+        """Set the health of the server and of what it offers."""
         for name in ("", *_READY):
             await self._health.set(name, status)
-        for name in _LATER:
-            await self._health.set(name, health_pb2.HealthCheckResponse.NOT_SERVING)
 
 
 def warm_up(runtime: Runtime) -> None:

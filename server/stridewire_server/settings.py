@@ -7,6 +7,8 @@ from stridewire._messages import Limits
 
 DEFAULT_ADDRESS = "127.0.0.1:50051"
 _MAX_REPLY_BYTES = 8 << 20
+LARGE_REQUEST_BYTES = 16 << 20
+"""Requests that carry motion files may be so long; all others as long as the limits say."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,7 @@ class ServerSettings:
         vanished holds its session for two seconds at most. One that was closed is noticed at once.
         """
         return [
-            ("grpc.max_receive_message_length", limits.max_message_bytes),
+            ("grpc.max_receive_message_length", max(LARGE_REQUEST_BYTES, limits.max_message_bytes)),
             ("grpc.max_send_message_length", _MAX_REPLY_BYTES),
             ("grpc.max_concurrent_streams", 4 * self.max_sessions),
             (

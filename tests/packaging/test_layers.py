@@ -21,7 +21,8 @@ CLIENT_FOR_ENGINE = tuple(
 ENGINE_FLOORS = {
     "commands": 5,
     "evaluation": 4,
-    "in_process": 4,
+    "in_process": 5,
+    "answering": 4,
     "replaying": 4,
     "building": 3,
     "runtime": 3,

@@ -33,7 +33,7 @@ ONE = "tests/integration/test_one_interface.py::"
 SAME = "tests/integration/test_same_in_process.py::"
 CURL = "tests/integration/test_grpcurl.py::"
 BLEND = "tests/integration/test_blend.py::"
-LATER = "tests/contract/test_services_of_later_versions.py::"
+STITCH = "tests/integration/test_stitch.py::"
 NODE = "tests/end_to_end/test_node.py::"
 QUERIES = f"{CURL}test_every_query_is_a_one_liner[grpcurl]"
 WAYS = ("blocking", "asyncio", "in process", "grpcurl", "Node")
@@ -49,19 +49,19 @@ BY_CLIENTS = {
     "GetSkeleton": f"{ONE}test_the_skeleton_is_the_librarys[{{way}}]",
     "Blend": f"{BLEND}test_references_and_poses_are_the_same[{{way}}]",
     "BlendMany": f"{BLEND}test_many_are_each[{{way}}]",
-    "Stitch": f"{LATER}test_stitch_is_not_implemented_yet[{{way}}]",
+    "Stitch": f"{STITCH}test_clips_become_one_motion[{{way}}]",
 }
 """Which test has which method, for each kind of client."""
 BY_GRPCURL = {
     "Animate": f"{CURL}test_a_scripted_session_comes_from_a_file[grpcurl]",
     "Blend": f"{CURL}test_a_blend_is_pasted[grpcurl]",
     "BlendMany": f"{CURL}test_many_blends_are_one_call[grpcurl]",
-    "Stitch": BY_CLIENTS["Stitch"].format(way="grpcurl"),
+    "Stitch": f"{STITCH}test_it_is_a_one_liner",
 }
 """Which test has which method by grpcurl, where it is not that of all queries."""
 BY_NODE = {
     "Animate": f"{NODE}test_node_streams",
-    "Stitch": BY_CLIENTS["Stitch"].format(way="Node"),
+    "Stitch": f"{STITCH}test_node_stitches",
 }
 """Which test has which method by Node, where it is not that of all queries."""
 
@@ -78,15 +78,14 @@ def methods() -> Iterator[Point]:
     names = [method.name for service in services for method in service.methods]
     yield Point("RPCs without a row", str(sorted(set(names) - set(BY_CLIENTS))), "none",
                 not set(names) - set(BY_CLIENTS))  # fmt: skip
-    passed = _passed({path.partition("::")[0] for path in (ONE, SAME, BLEND, LATER, CURL, NODE)})
+    passed = _passed({path.partition("::")[0] for path in (ONE, SAME, BLEND, STITCH, CURL, NODE)})
     for name in names:
         cells = {way: BY_CLIENTS[name].format(way=way) for way in WAYS[:3]}
         cells["grpcurl"] = BY_GRPCURL.get(name, QUERIES)
         cells["Node"] = BY_NODE.get(name, f"{NODE}test_node_asks")
-        says = ", which pins UNIMPLEMENTED" if LATER in BY_CLIENTS[name] else ""
         for way, test in cells.items():
             outcome = passed.get(test.rpartition("/")[2], "absent")
-            yield Point(f"{name} by {way}", f"{test}{says}: {outcome}", "a test",
+            yield Point(f"{name} by {way}", f"{test}: {outcome}", "a test",
                         outcome == "passed")  # fmt: skip
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from stridewire._codec import blends, catalogue, queries
+from stridewire._codec import blends, catalogue, queries, stitches
 from stridewire._messages import (
     BlendManyQuery,
     BlendQuery,
@@ -13,16 +13,18 @@ from stridewire._messages import (
     InfoQuery,
     LibrariesQuery,
     LibraryQuery,
+    PartsQuery,
     Query,
     SearchQuery,
     SkeletonQuery,
+    StitchQuery,
 )
-from stridewire.v1 import blend_pb2, library_pb2, match_pb2
+from stridewire.v1 import blend_pb2, library_pb2, match_pb2, stitch_pb2
 
 
 @dataclass(frozen=True)
 class Call:
-    """A unary method and what translates its question and its answer."""
+    """A method and what translates its question and its answer, or the parts of its answer."""
 
     path: str
     encode: Callable[[Any], Any]
@@ -32,7 +34,7 @@ class Call:
     decode: Callable[[Any], Any]
     """Response to answer."""
 
-    def serialize(self, query: Query[Any]) -> bytes:
+    def serialize(self, query: Query[Any] | PartsQuery[Any]) -> bytes:
         """Return the bytes of a query's request."""
         data: bytes = self.encode(query).SerializeToString()
         return data
@@ -104,3 +106,13 @@ CALL_BY_QUERY: dict[type[Query[Any]], Call] = {
     ),
 }
 """Each query that travels, and its method."""
+
+CALL_BY_PARTS_QUERY: dict[type[PartsQuery[Any]], Call] = {
+    StitchQuery: Call(
+        "/stridewire.v1.StitchService/Stitch",
+        stitches.encode_stitch,
+        stitch_pb2.StitchResponse.FromString,
+        stitches.decode_part,
+    ),
+}
+"""Each query that is answered in parts, and its method."""

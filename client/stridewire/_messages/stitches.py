@@ -119,13 +119,13 @@ class StitchQuery(PartsQuery[StitchPart]):
     """What is one natural motion of these clips, in this order?"""
 
     clips: Sequence[ClipSpan | Clip | BvhText]
-    """2 to 64, each of at least 10 frames; of clips of yours the contacts are found anew."""
+    """2 to 64, each of at least 10 frames at 60 frames/s; contacts of a `Clip` are found anew."""
     stitcher: str = "auto"
     """Name of a stitcher; `auto` takes the best for each seam."""
     window_s: float = 1.5
     """Within so many seconds after a seam poses may differ from the clips'; 0.1 to 2."""
-    shift_s: float = 0.5
-    """How far the network's windows are apart; up to `window_s`."""
+    shift_s: float | None = None
+    """How far the network's windows are apart, up to `window_s`; None means 0.5 at most."""
     passes: int = 1
     """How often the network works on its own result; 1 to 8."""
     search_frames: int = 0
@@ -140,3 +140,8 @@ class StitchQuery(PartsQuery[StitchPart]):
     """Frames after it stay the clips'; 0 means the end."""
     path: RootPath | None = None
     """None means the clips' own paths, each going on where the one before ends."""
+
+    @property
+    def shift(self) -> float:
+        """Seconds between the network's windows."""
+        return min(0.5, self.window_s) if self.shift_s is None else self.shift_s

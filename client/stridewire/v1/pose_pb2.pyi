@@ -88,14 +88,16 @@ class ClipSpan(_message.Message):
     def __init__(self, library: _Optional[str] = ..., clip: _Optional[str] = ..., start_s: _Optional[float] = ..., end_s: _Optional[float] = ...) -> None: ...
 
 class InlineClip(_message.Message):
-    __slots__ = ("name", "frame_rate_hz", "poses")
+    __slots__ = ("name", "frame_rate_hz", "poses", "skeleton")
     NAME_FIELD_NUMBER: _ClassVar[int]
     FRAME_RATE_HZ_FIELD_NUMBER: _ClassVar[int]
     POSES_FIELD_NUMBER: _ClassVar[int]
+    SKELETON_FIELD_NUMBER: _ClassVar[int]
     name: str
     frame_rate_hz: float
     poses: Poses
-    def __init__(self, name: _Optional[str] = ..., frame_rate_hz: _Optional[float] = ..., poses: _Optional[_Union[Poses, _Mapping]] = ...) -> None: ...
+    skeleton: Skeleton
+    def __init__(self, name: _Optional[str] = ..., frame_rate_hz: _Optional[float] = ..., poses: _Optional[_Union[Poses, _Mapping]] = ..., skeleton: _Optional[_Union[Skeleton, _Mapping]] = ...) -> None: ...
 
 class Trajectory(_message.Message):
     __slots__ = ("positions_xz", "facings_yaw", "times_s")

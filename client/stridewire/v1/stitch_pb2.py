@@ -15,7 +15,7 @@ _sym_db = _symbol_database.Default()
 from stridewire.v1 import pose_pb2 as stridewire_dot_v1_dot_pose__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x1astridewire/v1/stitch.proto\x12\rstridewire.v1\x1a\x18stridewire/v1/pose.proto\"\x98\x02\n\rStitchRequest\x12(\n\x05\x63lips\x18\x01 \x03(\x0b\x32\x19.stridewire.v1.ClipSource\x12\x10\n\x08window_s\x18\x02 \x01(\x01\x12\x0f\n\x07shift_s\x18\x03 \x01(\x01\x12\x0e\n\x06passes\x18\x04 \x01(\r\x12\x13\n\x0bseam_search\x18\x05 \x01(\x08\x12\x15\n\x08strength\x18\x06 \x01(\x02H\x00\x88\x01\x01\x12?\n\njoint_mask\x18\x07 \x03(\x0b\x32+.stridewire.v1.StitchRequest.JointMaskEntry\x1a\x30\n\x0eJointMaskEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\x02:\x02\x38\x01\x42\x0b\n\t_strength\"\x9d\x01\n\x0eStitchResponse\x12-\n\x06header\x18\x01 \x01(\x0b\x32\x1b.stridewire.v1.StitchHeaderH\x00\x12%\n\x05poses\x18\x02 \x01(\x0b\x32\x14.stridewire.v1.PosesH\x00\x12-\n\x06report\x18\x03 \x01(\x0b\x32\x1b.stridewire.v1.StitchReportH\x00\x42\x06\n\x04part\"`\n\x0cStitchHeader\x12)\n\x08skeleton\x18\x01 \x01(\x0b\x32\x17.stridewire.v1.Skeleton\x12\x15\n\rframe_rate_hz\x18\x02 \x01(\x01\x12\x0e\n\x06\x66rames\x18\x03 \x01(\r\".\n\x0cStitchReport\x12\r\n\x05seams\x18\x01 \x03(\r\x12\x0f\n\x07methods\x18\x02 \x03(\t2X\n\rStitchService\x12G\n\x06Stitch\x12\x1c.stridewire.v1.StitchRequest\x1a\x1d.stridewire.v1.StitchResponse0\x01\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x1astridewire/v1/stitch.proto\x12\rstridewire.v1\x1a\x18stridewire/v1/pose.proto\"\xbb\x03\n\rStitchRequest\x12(\n\x05\x63lips\x18\x01 \x03(\x0b\x32\x19.stridewire.v1.ClipSource\x12\x15\n\x08window_s\x18\x02 \x01(\x01H\x00\x88\x01\x01\x12\x14\n\x07shift_s\x18\x03 \x01(\x01H\x01\x88\x01\x01\x12\x13\n\x06passes\x18\x04 \x01(\rH\x02\x88\x01\x01\x12\x13\n\x0bseam_search\x18\x05 \x01(\x08\x12\x15\n\x08strength\x18\x06 \x01(\x02H\x03\x88\x01\x01\x12?\n\njoint_mask\x18\x07 \x03(\x0b\x32+.stridewire.v1.StitchRequest.JointMaskEntry\x12\x10\n\x08stitcher\x18\x08 \x01(\t\x12\x15\n\rsearch_frames\x18\t \x01(\r\x12\x0f\n\x07start_s\x18\n \x01(\x01\x12\r\n\x05\x65nd_s\x18\x0b \x01(\x01\x12%\n\x04path\x18\x0c \x01(\x0b\x32\x17.stridewire.v1.RootPath\x1a\x30\n\x0eJointMaskEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\x02:\x02\x38\x01\x42\x0b\n\t_window_sB\n\n\x08_shift_sB\t\n\x07_passesB\x0b\n\t_strength\"F\n\x08RootPath\x12\x14\n\x0cpositions_xz\x18\x01 \x03(\x02\x12\x13\n\x0b\x66\x61\x63ings_yaw\x18\x02 \x03(\x02\x12\x0f\n\x07times_s\x18\x03 \x03(\x02\"\x9d\x01\n\x0eStitchResponse\x12-\n\x06header\x18\x01 \x01(\x0b\x32\x1b.stridewire.v1.StitchHeaderH\x00\x12%\n\x05poses\x18\x02 \x01(\x0b\x32\x14.stridewire.v1.PosesH\x00\x12-\n\x06report\x18\x03 \x01(\x0b\x32\x1b.stridewire.v1.StitchReportH\x00\x42\x06\n\x04part\"`\n\x0cStitchHeader\x12)\n\x08skeleton\x18\x01 \x01(\x0b\x32\x17.stridewire.v1.Skeleton\x12\x15\n\rframe_rate_hz\x18\x02 \x01(\x01\x12\x0e\n\x06\x66rames\x18\x03 \x01(\r\"\x95\x03\n\x0cStitchReport\x12\r\n\x05seams\x18\x01 \x03(\r\x12\x0f\n\x07methods\x18\x02 \x03(\t\x12\x0f\n\x07reasons\x18\x03 \x03(\t\x12\x12\n\ncut_before\x18\x04 \x03(\r\x12\x11\n\tcut_after\x18\x05 \x03(\r\x12,\n\x06\x62\x65\x66ore\x18\x06 \x01(\x0b\x32\x1c.stridewire.v1.MotionFigures\x12+\n\x05\x61\x66ter\x18\x07 \x01(\x0b\x32\x1c.stridewire.v1.MotionFigures\x12/\n\telsewhere\x18\x08 \x01(\x0b\x32\x1c.stridewire.v1.MotionFigures\x12\x16\n\x0e\x63hanged_frames\x18\t \x01(\r\x12\x10\n\x08window_s\x18\n \x01(\x01\x12\x37\n\x06models\x18\x0b \x03(\x0b\x32\'.stridewire.v1.StitchReport.ModelsEntry\x12\x0f\n\x07version\x18\x0c \x01(\t\x1a-\n\x0bModelsEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\t:\x02\x38\x01\"|\n\rMotionFigures\x12\x16\n\x0esliding_c_cm_s\x18\x01 \x01(\x01\x12\x16\n\x0esliding_a_cm_s\x18\x02 \x01(\x01\x12\x10\n\x08toe_jerk\x18\x03 \x01(\x01\x12\x11\n\tknee_jerk\x18\x04 \x01(\x01\x12\x16\n\x0eseam_step_cm_s\x18\x05 \x01(\x01\x32X\n\rStitchService\x12G\n\x06Stitch\x12\x1c.stridewire.v1.StitchRequest\x1a\x1d.stridewire.v1.StitchResponse0\x01\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -24,16 +24,24 @@ if _descriptor._USE_C_DESCRIPTORS == False:
   DESCRIPTOR._options = None
   _globals['_STITCHREQUEST_JOINTMASKENTRY']._options = None
   _globals['_STITCHREQUEST_JOINTMASKENTRY']._serialized_options = b'8\001'
+  _globals['_STITCHREPORT_MODELSENTRY']._options = None
+  _globals['_STITCHREPORT_MODELSENTRY']._serialized_options = b'8\001'
   _globals['_STITCHREQUEST']._serialized_start=72
-  _globals['_STITCHREQUEST']._serialized_end=352
-  _globals['_STITCHREQUEST_JOINTMASKENTRY']._serialized_start=291
-  _globals['_STITCHREQUEST_JOINTMASKENTRY']._serialized_end=339
-  _globals['_STITCHRESPONSE']._serialized_start=355
-  _globals['_STITCHRESPONSE']._serialized_end=512
-  _globals['_STITCHHEADER']._serialized_start=514
-  _globals['_STITCHHEADER']._serialized_end=610
-  _globals['_STITCHREPORT']._serialized_start=612
-  _globals['_STITCHREPORT']._serialized_end=658
-  _globals['_STITCHSERVICE']._serialized_start=660
-  _globals['_STITCHSERVICE']._serialized_end=748
+  _globals['_STITCHREQUEST']._serialized_end=515
+  _globals['_STITCHREQUEST_JOINTMASKENTRY']._serialized_start=418
+  _globals['_STITCHREQUEST_JOINTMASKENTRY']._serialized_end=466
+  _globals['_ROOTPATH']._serialized_start=517
+  _globals['_ROOTPATH']._serialized_end=587
+  _globals['_STITCHRESPONSE']._serialized_start=590
+  _globals['_STITCHRESPONSE']._serialized_end=747
+  _globals['_STITCHHEADER']._serialized_start=749
+  _globals['_STITCHHEADER']._serialized_end=845
+  _globals['_STITCHREPORT']._serialized_start=848
+  _globals['_STITCHREPORT']._serialized_end=1253
+  _globals['_STITCHREPORT_MODELSENTRY']._serialized_start=1208
+  _globals['_STITCHREPORT_MODELSENTRY']._serialized_end=1253
+  _globals['_MOTIONFIGURES']._serialized_start=1255
+  _globals['_MOTIONFIGURES']._serialized_end=1379
+  _globals['_STITCHSERVICE']._serialized_start=1381
+  _globals['_STITCHSERVICE']._serialized_end=1469
 # @@protoc_insertion_point(module_scope)

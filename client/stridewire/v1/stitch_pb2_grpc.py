@@ -6,7 +6,8 @@ from stridewire.v1 import stitch_pb2 as stridewire_dot_v1_dot_stitch__pb2
 
 
 class StitchServiceStub(object):
-    """Answers "make one natural motion of these". Not implemented yet: answered UNIMPLEMENTED.
+    """Answers "make one natural motion of these". Each clip is set to go on where the one before ends;
+    seams are hidden in a window after them; poses away from seams are the clips' own, bit by bit.
     """
 
     def __init__(self, channel):
@@ -23,11 +24,13 @@ class StitchServiceStub(object):
 
 
 class StitchServiceServicer(object):
-    """Answers "make one natural motion of these". Not implemented yet: answered UNIMPLEMENTED.
+    """Answers "make one natural motion of these". Each clip is set to go on where the one before ends;
+    seams are hidden in a window after them; poses away from seams are the clips' own, bit by bit.
     """
 
     def Stitch(self, request, context):
-        """Stitches clips in order; sends a header, chunks of poses, a report.
+        """Stitches clips in order; sends a header, poses as they become final, a report. A request may
+        have 16 MiB.
         """
         context.set_code(grpc.StatusCode.UNIMPLEMENTED)
         context.set_details('Method not implemented!')
@@ -49,7 +52,8 @@ def add_StitchServiceServicer_to_server(servicer, server):
 
  # This class is part of an EXPERIMENTAL API.
 class StitchService(object):
-    """Answers "make one natural motion of these". Not implemented yet: answered UNIMPLEMENTED.
+    """Answers "make one natural motion of these". Each clip is set to go on where the one before ends;
+    seams are hidden in a window after them; poses away from seams are the clips' own, bit by bit.
     """
 
     @staticmethod

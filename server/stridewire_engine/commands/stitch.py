@@ -49,9 +49,8 @@ _ROWS = {
 )
 @click.option(
     "--shift",
-    default=_DEFAULTS.shift_s,
-    show_default=True,
-    help="Seconds between the network's windows.",
+    type=float,
+    help="Seconds between the network's windows; 0.5, or a shorter window.",
 )
 @click.option(
     "--passes", default=_DEFAULTS.passes, show_default=True, help="Passes of the network."
@@ -88,7 +87,7 @@ def stitch(
     out: Path,
     stitcher: str,
     window: float,
-    shift: float,
+    shift: float | None,
     passes: int,
     search_seam: int,
     strength: float,

@@ -89,10 +89,10 @@ def check_clips(
 def _check_windows(query: StitchQuery) -> Iterator[Violation]:
     if not 0.1 <= query.window_s <= 2.0:
         yield Violation("window_s", f"{query.window_s:g}; allowed are 0.1 to 2 seconds")
-    elif not 0.0 < query.shift_s <= query.window_s:
+    elif not 0.0 < query.shift <= query.window_s:
         yield Violation(
             "shift_s",
-            f"{query.shift_s:g}; allowed are more than 0 to window_s, {query.window_s:g}: "
+            f"{query.shift:g}; allowed are more than 0 to window_s, {query.window_s:g}: "
             "windows must follow each other without gaps",
         )
     if not 1 <= query.passes <= _MAX_PASSES:

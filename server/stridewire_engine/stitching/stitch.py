@@ -18,7 +18,7 @@ from stridewire_engine.stitching.methods import Method, method
 from stridewire_engine.stitching.path import impose
 from stridewire_engine.stitching.run import run
 
-_CHAINS_AT_ONCE = 32
+_CHAINS_AT_ONCE = 8
 _FRAMES_A_PART = 2000
 
 
