@@ -52,7 +52,8 @@ class _NaiveTick:
         state.time += dt
         goal = intent.set_goals(state, 20.0)
         prediction = intent.predict(state, goal, self._times, _SETTINGS)
-        reason = choice.due(state, self._matcher, dt, _SETTINGS)
+        nobody = np.zeros(len(state), np.bool_)
+        reason = choice.due(state, self._matcher, nobody, dt, _SETTINGS)
         reason = np.where(reason, reason, TransitionReason.BETTER_MATCH)
         jumps = choice.choose(state, self._matcher, self._sets, prediction, reason, _SETTINGS)
         intent.advance(state, goal, dt, _SETTINGS)

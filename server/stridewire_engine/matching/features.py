@@ -18,6 +18,8 @@ _EXTRAPOLATION_S = 0.1
 """The last so many seconds' velocity goes on behind a clip's end."""
 _STOP_SPEED = 0.1
 """A clip that ends slower than this, in m/s, has come to rest and may be entered to its end."""
+_REST_S = 0.75
+"""And has been so slow for so many seconds, so that whoever enters it can stay in it."""
 
 
 @dataclass(frozen=True)
@@ -150,7 +152,7 @@ def _headings(rotations: Quaternions) -> Floats:
 
 
 def _ends_at_rest(clip: Clip) -> bool:
-    frames = min(len(clip) - 1, round(0.25 * clip.frame_rate))
+    frames = min(len(clip) - 1, round(_REST_S * clip.frame_rate))
     if frames < 1:
         return False
     way = clip.pose.root_position[-1] - clip.pose.root_position[-1 - frames]

@@ -64,6 +64,9 @@ class Characters:
     """Index of the clip; -1 before the first search."""
     clip_time: Floats = column(dtype=np.float64)
     """Seconds within the clip."""
+    pace: Floats = column(dtype=np.float64, fill=1.0)
+    """Seconds of the clip for each second that passes; -1 where a standing character goes back."""
+    goes_back: Flags = column(dtype=np.bool_)
     since_jump: Floats = column(dtype=np.float64)
     until_search: Floats = column(dtype=np.float64, fill=1.0)
     stagger: Floats = column(dtype=np.float64)

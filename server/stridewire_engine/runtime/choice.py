@@ -52,10 +52,12 @@ class Jumps(NamedTuple):
     """`(M,)` numbers of the candidate sets."""
 
 
-def due(state: Characters, matcher: Matcher, dt: Floats, settings: TickSettings) -> Indices:
+def due(
+    state: Characters, matcher: Matcher, stands: Flags, dt: Floats, settings: TickSettings
+) -> Indices:
     """Return `(N,)` the reason to search now, 0 for none; paused characters search only to begin.
 
-    Lets the clocks of the searches run by `dt` `(N,)`.
+    Lets the clocks of the searches run by `dt` `(N,)`; those who stand `(N,)` need none.
     """
     state.until_search -= dt
     waited = settings.search_interval - state.until_search >= settings.shortest_interval
@@ -65,7 +67,7 @@ def due(state: Characters, matcher: Matcher, dt: Floats, settings: TickSettings)
         turned > settings.facing_jump
     )
     reason = np.zeros(len(state), np.int8)
-    reason[(state.until_search <= 0.0) & ~_idle(state, settings)] = TransitionReason.BETTER_MATCH
+    reason[(state.until_search <= 0.0) & ~stands] = TransitionReason.BETTER_MATCH
     reason[jumped & waited] = TransitionReason.CONTROL_CHANGE
     reason[state.force_search] = TransitionReason.FORCED
     reason[_at_end(state, matcher, dt, settings)] = TransitionReason.CLIP_END
@@ -164,16 +166,6 @@ def _search(
         found.put(mine, part)
         satisfied[mine] = among.satisfied[playing[mine]]
     return found, satisfied
-
-
-def _idle(state: Characters, settings: TickSettings) -> Flags:
-    """Tell who stands and is asked to go on standing: no search, hence no fidgeting jumps."""
-    asked = np.hypot(state.desired_velocity[:, 0], state.desired_velocity[:, 1])
-    moving = np.hypot(state.sim_velocity[:, 0], state.sim_velocity[:, 1])
-    fastest = np.maximum(np.maximum(asked, moving), state.root_speed)
-    turn = np.abs(wrap_angle(state.goal_yaw - state.root_yaw))
-    still = (fastest < settings.idle_speed) & (turn < settings.idle_turn)
-    return np.asarray(still & ~state.has_path)
 
 
 def _at_end(state: Characters, matcher: Matcher, dt: Floats, settings: TickSettings) -> Flags:

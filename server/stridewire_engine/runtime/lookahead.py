@@ -58,7 +58,9 @@ def legs_ahead(
     count = len(times)
     clip = np.repeat(state.clip, count)
     now = sampling.moments(library, clip, np.repeat(state.clip_time, count))
-    then = sampling.moments(library, clip, (state.clip_time[:, None] + times).ravel())
+    then = sampling.moments(
+        library, clip, (state.clip_time[:, None] + state.pace[:, None] * times).ravel()
+    )
     motion = sampling.root_delta(library, now, then).reshape(-1, count, 3)
     faded = -np.expm1(-_LN2 * times / root_halflife) * (root_halflife / _LN2)
     motion += state.root_offset[:, None] * faded[:, None] + pull[:, None] * times[:, None]

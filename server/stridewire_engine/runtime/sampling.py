@@ -56,16 +56,17 @@ def sample_root(library: Library, at: Moments) -> tuple[Vectors, Floats]:
     return position, yaw_a + weight * (yaw_b.astype(np.float64) - yaw_a)
 
 
-def sample_motion(library: Library, at: Moments, toes: Vectors) -> Motion:
+def sample_motion(library: Library, at: Moments, pace: Floats, toes: Vectors) -> Motion:
     """Return poses and their rates of change, those of the interpolant between both rows.
 
     Args:
         library: The library.
         at: Moments.
+        pace: `(N,)` seconds of the clip for each second that passes.
         toes: `(F, 2, 3)` toes in every frame of the library, relative to the root.
     """
     hips, rotations = sample_pose(library, at)
-    rate = np.float32(library.frame_rate)
+    rate = (library.frame_rate * pace[:, None]).astype(np.float32)
     toe, toe_after = toes[at.rows], toes[at.rows + 1]
     step = quaternion.multiply(
         library.rotations[at.rows + 1], quaternion.conjugate(library.rotations[at.rows])
@@ -74,9 +75,9 @@ def sample_motion(library: Library, at: Moments, toes: Vectors) -> Motion:
         hips,
         rotations,
         (library.hips[at.rows + 1] - library.hips[at.rows]) * rate,
-        quaternion.to_scaled_axis(step) * rate,
+        quaternion.to_scaled_axis(step) * rate[:, None],
         toe + at.weight[:, None, None] * (toe_after - toe),
-        (toe_after - toe) * rate,
+        (toe_after - toe) * rate[:, None],
     )
 
 
@@ -88,6 +89,7 @@ def root_delta(library: Library, before: Moments, after: Moments) -> Floats:
     position, yaw = sample_root(library, before)
     position_after, yaw_after = sample_root(library, after)
     again = after.rows + after.weight < before.rows + before.weight
+    again &= library.loops[library.clip_of[after.rows]]
     if again.any():
         position_after, yaw_after = _one_lap_on(library, after, again, position_after, yaw_after)
     way = position_after - position

@@ -12,7 +12,7 @@ from stridewire._messages import TransitionReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire_engine.matching.search import Matcher
-from stridewire_engine.runtime import choice, feet, intent, root, sampling
+from stridewire_engine.runtime import choice, feet, intent, root, sampling, standing
 from stridewire_engine.runtime.characters import Characters, contiguous
 from stridewire_engine.runtime.choice import Jumps, Sets
 from stridewire_engine.runtime.lookahead import LegTracks, legs_ahead
@@ -79,6 +79,7 @@ class Tick:
         self._clock = clock
         self._legs = Legs.of(matcher.library.skeleton)
         self._tracks = LegTracks.of(matcher.library, self._legs)
+        self._spans = standing.Spans.of(matcher.library, settings.clip_end_margin)
         self._times = np.array(matcher.schema.trajectory_times)
 
     def step(self, state: Characters, dt: Floats, sets: Sets) -> Block:
@@ -95,7 +96,8 @@ class Tick:
         goal = intent.set_goals(state, self._max_speed)
         prediction = intent.predict(state, goal, self._times, settings)
         timings.note("intent")
-        reason = choice.due(state, self._matcher, dt, settings)
+        stands = standing.stands(state, library, self._spans, settings)
+        reason = choice.due(state, self._matcher, stands, dt, settings)
         jumps = None
         if reason.any():
             jumps = choice.choose(state, self._matcher, sets, prediction, reason, settings)
@@ -104,7 +106,7 @@ class Tick:
         if jumps is not None and len(jumps.characters):
             self._jump(state, jumps)
         before = sampling.moments(library, state.clip, state.clip_time)
-        state.clip_time += dt
+        state.clip_time += standing.advance(state, library, self._spans, dt, settings)
         state.since_jump += dt
         after = sampling.moments(library, state.clip, state.clip_time)
         state.clip_time[...] = sampling.wrap_times(library, state.clip, state.clip_time)
@@ -140,10 +142,11 @@ class Tick:
         rows = state.take(jumps.characters)
         old = sampling.moments(library, np.maximum(jumps.from_clip, 0), jumps.from_time)
         new = sampling.moments(library, jumps.to_clip, jumps.to_time)
-        rows.root_offset += sampling.root_velocity(library, old)
+        rows.root_offset += sampling.root_velocity(library, old) * rows.pace[:, None]
         rows.root_offset -= sampling.root_velocity(library, new)
-        source = sampling.sample_motion(library, old, self._tracks.toes)
-        target = sampling.sample_motion(library, new, self._tracks.toes)
+        source = sampling.sample_motion(library, old, rows.pace, self._tracks.toes)
+        rows.pace[...], rows.goes_back[...] = 1.0, False
+        target = sampling.sample_motion(library, new, rows.pace, self._tracks.toes)
         offsets, roots = _stitch_state(rows), Roots(rows.root_position, rows.root_yaw)
         plants = np.array([stitcher.plants_feet for stitcher in STITCHERS])
         leaves = plants[rows.stitched_by] & ~plants[rows.stitcher]
