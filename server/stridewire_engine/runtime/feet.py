@@ -64,7 +64,7 @@ def _keep_for_stance(state: Characters, rows: Flags) -> None:
     """Note what a stitcher that plants feet has to start from."""
     state.toe_shown[rows] = state.shown_world[rows, 2:4]
     for motion in (
-        state.toe_gap_speed, state.toe_lift, state.toe_lift_speed, state.hip_drop,
+        state.toe_gap_speed, state.toe_lift, state.toe_lift_speed, state.toe_step, state.hip_drop,
         state.hip_drop_speed,
     ):  # fmt: skip
         motion[rows] = 0.0

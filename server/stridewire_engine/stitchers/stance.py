@@ -3,7 +3,7 @@
 The body is inertialized by springs. Toes stand where they stand while the clip's labels say so and
 close what they are off by in their next swing (`footing`); legs bend accordingly; the hips drop,
 looking ahead, and heels rise where legs would be too short; a foot that closes a gap is lifted a
-little. A foot that stands off its place stays there until the clip takes a step.
+little. A foot that stands off its place is put right by a step of its own (`replanting`).
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Quaternions, Vectors
 from stridewire.motion.springs import damper_exact, decay_spring_damper_exact, spring_damper_exact
-from stridewire_engine.stitchers import footing, offsets
+from stridewire_engine.stitchers import footing, offsets, replanting
 from stridewire_engine.stitchers.footing import Toes
 from stridewire_engine.stitchers.legs import Legs, bend, leg_pose, raise_heels, turn_feet
 from stridewire_engine.stitchers.stitcher import (
@@ -37,12 +37,14 @@ _STRONGEST_PULL = 50.0
 _STRONGEST_HIPS, _STRONGEST_TURN = 8.0, 25.0
 """Towards the clip's hips and joints, m/s² and rad/s²; wide offsets take longer."""
 _SWING_SHORTEST, _SWING_LONGEST = 0.06, 0.4
-_HEIGHT_HALFLIFE = 0.05
+_HEIGHT_HALFLIFE = 0.035
 _REACH = 0.985
 _DEEPEST_DROP = 0.08
 _DROP_HALFLIFE = 0.1
 _LIFT_BY_SPEED, _HIGHEST_LIFT = 0.03, 0.05
 _LIFT_HALFLIFE = 0.08
+_HOVER = 0.005
+"""A toe that stands is at most so many metres higher than at rest."""
 _LANDING_SOON_S = 0.1
 
 
@@ -61,6 +63,7 @@ class Stance:
         state.toe_gap[...] = state.toe_shown - roots.to_world(target.toes)
         state.toe_gap_speed += turn_to_world(source.toes_velocity - target.toes_velocity, roots.yaw)
         state.toe_swing[...] = 0.0
+        state.toe_step[...] = 0.0
         state.body_halflife[:, 0] = _gentle_halflife(state.offset_hips, _STRONGEST_HIPS)
         state.body_halflife[:, 1:] = _gentle_halflife(state.offset_rotations, _STRONGEST_TURN)
 
@@ -68,6 +71,8 @@ class Stance:
         """Spring the body on, move the toes, bend the legs."""
         _decay_body(state, sample.legs, dt)
         hips, rotations = offsets.add(state, sample)
+        if sample.guide is None:
+            sample = replanting.lift_feet(state, sample, dt)
         clip = leg_pose(sample.legs, sample.hips, sample.rotations)
         led = clip.toe if sample.guide is None else clip.toe + sample.guide.toe_offset
         target = self._target(state, sample, led, dt)
@@ -104,6 +109,7 @@ class Stance:
         state.toe_swing[...] = damper_exact(
             state.toe_swing, 1.0 - planted, _SWING_ONSET, dt[:, None]
         )
+        halflife = np.where(state.toe_step > 0.0, replanting.STEP_HALFLIFE, halflife)
         halflife = np.maximum(halflife, _gentle_halflife(state.toe_gap, _STRONGEST_PULL))
         halflife = halflife / np.maximum(state.toe_swing, 0.1)
         settled = self._settled(sample)
@@ -125,7 +131,7 @@ class Stance:
             _HEIGHT_HALFLIFE,
             dt[:, None],
         )
-        self._lift(state, sample, dt)
+        self._lift(state, sample, target, dt)
         moved.position[..., 1] = target.position[..., 1] + height + state.toe_lift
         moved.velocity[..., 1] = target.velocity[..., 1] + rise + state.toe_lift_speed
         return moved
@@ -137,14 +143,17 @@ class Stance:
         times = np.where(sample.ahead.contacts, sample.ahead.times[:, None], np.inf)
         return np.asarray(np.clip((_BRAKE_FROM_S - times.min(axis=1)) / _BRAKE_S, 0.0, 1.0))
 
-    def _lift(self, state: StitchState, sample: Sample, dt: Floats) -> None:
-        """Raise toes that close a gap fast and do not land soon."""
+    def _lift(self, state: StitchState, sample: Sample, target: Toes, dt: Floats) -> None:
+        """Raise toes that close a gap fast and do not land soon; lower those that stand high."""
         closing = np.hypot(state.toe_gap_speed[..., 0], state.toe_gap_speed[..., 2])
         down = sample.contacts
         if sample.ahead is not None:
             soon = sample.ahead.times <= _LANDING_SOON_S
             down = down | sample.ahead.contacts[:, soon].any(axis=1)
-        wanted = np.where(down, 0.0, np.minimum(_LIFT_BY_SPEED * closing, _HIGHEST_LIFT))
+        lift = np.where(down, 0.0, np.minimum(_LIFT_BY_SPEED * closing, _HIGHEST_LIFT))
+        ground = sample.roots.position[:, None, 1] + sample.legs.toe_height
+        above = np.maximum(target.position[..., 1] - ground - _HOVER, 0.0)
+        wanted = np.where(sample.contacts, -above, lift)
         state.toe_lift[...], state.toe_lift_speed[...] = spring_damper_exact(
             state.toe_lift, state.toe_lift_speed, wanted, _LIFT_HALFLIFE, dt[:, None]
         )

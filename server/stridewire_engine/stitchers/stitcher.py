@@ -181,6 +181,8 @@ class StitchState:
     """`(N, 2)` height added to toes that swing."""
     toe_lift_speed: Floats = column(2)
     """`(N, 2)`."""
+    toe_step: Floats = column(2)
+    """`(N, 2)` seconds left of a step that a foot takes while the clip stands."""
     hip_drop: Floats = column()
     """`(N,)` metres that the hips are lowered by."""
     hip_drop_speed: Floats = column()
