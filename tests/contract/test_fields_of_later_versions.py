@@ -18,9 +18,6 @@ SPEC = {
     "responsiveness": {"responsiveness": 0.0},
     "rate_divider": {"rate_divider": 2},
 }
-SPARSE = {
-    "ground": {"ground": pb.Ground(height=0.1)},
-}
 
 
 @pytest.mark.parametrize("field", OPEN)
@@ -46,17 +43,6 @@ def test_characters_of_an_edit(raw_stream: Call, field: str) -> None:
     assert violation.field == f"edit.add[0].{field}"
     assert "not implemented yet" in violation.description
     assert list(responses[2].frame.characters) == [0]
-
-
-@pytest.mark.parametrize("field", SPARSE)
-def test_sparse_controls_of_a_step(raw_stream: Call, field: str) -> None:
-    """In a Step it is told in the stream, and the step makes its frame."""
-    sparse = pb.Sparse(character=0, **SPARSE[field])
-    responses = raw_stream(opening(), stepping(step=1, sparse=[sparse]))
-    (violation,) = responses[1].error.violations
-    assert violation.field == f"step.sparse[0].{field}"
-    assert "not implemented yet" in violation.description
-    assert responses[2].frame.applied_step == 1
 
 
 def test_all_other_fields_work(raw_stream: Call) -> None:
@@ -90,10 +76,11 @@ def test_all_other_fields_work(raw_stream: Call) -> None:
         root_correction=pb.RootCorrection(root=spec.root),
         force_search=True,
         filter="walk",
+        ground=pb.Ground(height=0.1),
     )
     # sugar for a filter, so that it comes in a control of its own
     gait = pb.Sparse(character=7, gait="walk")
-    later = {"gait", *(name.partition(".")[2] for name in OPEN), *SPEC, *SPARSE}
+    later = {"gait", *(name.partition(".")[2] for name in OPEN), *SPEC}
     for message in (opened, spec, sparse):
         present = {field.name for field, _ in message.ListFields()}
         assert present == {f.name for f in message.DESCRIPTOR.fields} - later

@@ -11,6 +11,7 @@ from stridewire._errors import InvalidRequestError, NotImplementedYetError, Viol
 from stridewire._messages import (
     CharacterSpec,
     CorrectionMode,
+    Ground,
     GroundPose,
     Limits,
     Open,
@@ -27,6 +28,8 @@ from stridewire_engine.stitchers import STITCHERS
 
 _MAX_COORDINATE = 1e6
 _MAX_ID = 2**32 - 1
+_UNIT, _STEEPEST = 0.01, 0.3
+"""How far from unit a normal may be; least height of a normal, for ground of 72 degrees."""
 _MAX_TRAJECTORY_S = 10.0
 _MIN_RATE_HZ, _MAX_RATE_HZ = 10.0, 240.0
 _MAX_CREDITS = 3600
@@ -153,6 +156,30 @@ def check_ground_pose(path: str, root: GroundPose) -> Iterator[Violation]:
         yield Violation(f"{path}.yaw", f"{root.yaw} is no angle; allowed are finite radians")
 
 
+def check_ground(path: str, ground: Ground) -> Iterator[Violation]:
+    """Yield what is wrong with the ground under a character."""
+    feet = ground.foot_heights
+    heights = np.append(ground.height, [] if feet is None else np.ravel(feet))
+    if feet is not None and np.size(feet) != 4:
+        yield Violation(f"{path}.foot_heights", f"{np.size(feet)} values; expected 4 or none")
+    if not (np.abs(heights) <= _MAX_COORDINATE).all():
+        yield Violation(path, f"heights are finite metres up to {_MAX_COORDINATE:g}")
+    normals = ground.foot_normals
+    if normals is not None and np.size(normals) != 12:
+        yield Violation(f"{path}.foot_normals", f"{np.size(normals)} values; expected 12 or none")
+        normals = None
+    for name, normal in (("normal", ground.normal), ("foot_normals", normals)):
+        if normal is None:
+            continue
+        vectors = np.reshape(np.asarray(normal, np.float64), (-1, 3))
+        unit = np.abs(np.linalg.norm(vectors, axis=-1) - 1.0) <= _UNIT
+        if not (unit & (vectors[:, 1] >= _STEEPEST)).all():
+            yield Violation(
+                f"{path}.{name}",
+                f"allowed are unit vectors that point up, their y at least {_STEEPEST:g}",
+            )
+
+
 def check_velocity(velocity: Floats, limits: Limits) -> tuple[Flags, Iterator[Violation]]:
     """Return which velocities `(N, 2)` are good `(N,)`, and what is wrong with the others."""
     good = np.abs(velocity) <= limits.max_speed
@@ -185,7 +212,9 @@ def check_facing(facing: Floats) -> tuple[Flags, Iterator[Violation]]:
 
 def check_sparse(path: str, sparse: Sparse, matcher: Matcher, *, known: bool) -> list[Violation]:
     """Return what is wrong with the rarer controls of one character."""
-    found = [] if sparse.ground is None else [Violation(f"{path}.ground", NOT_YET)]
+    found: list[Violation] = []
+    if sparse.ground is not None:
+        found += check_ground(f"{path}.ground", sparse.ground)
     if sparse.filter is not None:
         found += check_filter(f"{path}.filter", sparse.filter, matcher)
     if sparse.gait is not None:

@@ -59,6 +59,30 @@ class Characters:
     """What is left of the root velocity before the last jump: x, z in the root's frame, yaw
     rate."""
 
+    # the ground
+    has_ground: Flags = column(dtype=np.bool_)
+    """Whether the caller told of it; else it is level, at the root's height."""
+    ground_height: Floats = column(dtype=np.float64)
+    """Under the root, in the world, metres."""
+    ground_slope: Floats = column(2, dtype=np.float64)
+    """By how much it rises along x and z in the world, metres a metre."""
+    foot_heights: Floats = column(4, dtype=np.float64, fill=np.nan)
+    """Under left foot, left toe, right foot, right toe; NaN for the plane under the root."""
+    foot_slopes: Floats = column(2, 2, dtype=np.float64, fill=np.nan)
+    """Under the left and the right foot; NaN for that under the root."""
+    ground_told_at: Floats = column(5, 2, dtype=np.float64)
+    """x and z of root, left and right foot, left and right toe when it was told of."""
+    ground_points: Floats = column(3, 2, dtype=np.float64)
+    """x and z of root, left and right toe in the last frame."""
+    on_ground: Flags = column(dtype=np.bool_)
+    """Whether the ground has been shown."""
+    terrain: Floats = column(7, dtype=np.float64)
+    """What is shown of it: root and feet above the floor, slopes under both feet."""
+    terrain_speed: Floats = column(7, dtype=np.float64)
+    ground_sink: Floats = column(dtype=np.float64)
+    """Metres that the hips are lowered by for its sake."""
+    ground_sink_speed: Floats = column(dtype=np.float64)
+
     # playback and search
     clip: Indices = column(dtype=np.int32, fill=-1)
     """Index of the clip; -1 before the first search."""
@@ -106,6 +130,7 @@ class Characters:
     toe_swing: Floats = column(2)
     toe_lift: Floats = column(2)
     toe_lift_speed: Floats = column(2)
+    toe_step: Floats = column(2)
     hip_drop: Floats = column()
     hip_drop_speed: Floats = column()
     legs_shown: Quaternions = column(6, 4)

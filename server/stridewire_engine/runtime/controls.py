@@ -11,6 +11,7 @@ from stridewire._errors import Violation
 from stridewire._messages import (
     CorrectionMode,
     FrameFlag,
+    Ground,
     Limits,
     RootCorrection,
     Sparse,
@@ -33,6 +34,12 @@ _KEPT = (
     "filter",
     "weights",
     "stagger",
+    "has_ground",
+    "ground_height",
+    "ground_slope",
+    "foot_heights",
+    "foot_slopes",
+    "ground_told_at",
 )
 """What a character keeps when it is put somewhere else."""
 
@@ -144,6 +151,8 @@ def _apply_sparse(roster: Roster, crowd: Crowd, path: str, sparse: Sparse) -> li
         set_filter(crowd, row, gait_filter(sparse.gait, path, tags))
     if sparse.trajectory is not None:
         follow(state, row, sparse.trajectory, scale)
+    if sparse.ground is not None:
+        _stand_on(state, row, sparse.ground, scale)
     if sparse.root_correction is not None:
         if sparse.root_correction.mode is CorrectionMode.TELEPORT:
             roster.flag(at, FrameFlag.TELEPORTED)
@@ -151,6 +160,27 @@ def _apply_sparse(roster: Roster, crowd: Crowd, path: str, sparse: Sparse) -> li
     if sparse.force_search:
         state.force_search[row] = True
     return []
+
+
+def _stand_on(state: Characters, row: int, ground: Ground, scale: float) -> None:
+    """Tell a character of a size about the ground under it."""
+    state.has_ground[row] = True
+    state.ground_height[row] = ground.height / scale
+    state.ground_slope[row] = _slopes(np.array([ground.normal]))[0]
+    state.ground_told_at[row, 0] = state.root_position[row, ::2]
+    state.ground_told_at[row, 1:] = state.shown_world[row, :4, ::2]
+    state.foot_heights[row] = np.nan
+    if ground.foot_heights is not None:
+        state.foot_heights[row] = np.asarray(ground.foot_heights, np.float64).ravel() / scale
+    state.foot_slopes[row] = np.nan
+    if ground.foot_normals is not None:
+        normals = np.asarray(ground.foot_normals, np.float64).reshape(2, 2, 3).sum(axis=1)
+        state.foot_slopes[row] = _slopes(normals)
+
+
+def _slopes(normals: Floats) -> Floats:
+    """Return by how much planes of normals `(K, 3)` rise along x and z, `(K, 2)`."""
+    return np.asarray(-normals[:, ::2] / normals[:, 1:2])
 
 
 def _correct(state: Characters, row: int, correction: RootCorrection, scale: float) -> None:

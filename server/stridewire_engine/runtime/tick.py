@@ -12,7 +12,7 @@ from stridewire._messages import TransitionReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire_engine.matching.search import Matcher
-from stridewire_engine.runtime import choice, feet, intent, root, sampling, standing
+from stridewire_engine.runtime import choice, feet, ground, intent, root, sampling, standing
 from stridewire_engine.runtime.characters import Characters, contiguous
 from stridewire_engine.runtime.choice import Jumps, Sets
 from stridewire_engine.runtime.lookahead import LegTracks, legs_ahead
@@ -130,9 +130,18 @@ class Tick:
         )
         hips, rotations = self._stitch(state, sample, motion, delta, dt)
         timings.note("stitch")
+        contacts = contacts & ~np.repeat(state.toe_step > 0.0, 2, axis=1)
         rotations = feet.plant(
             state, self._legs, hips, rotations, contacts, _stands(state), dt, settings
         )
+        before_lift = state.terrain[:, 0].copy()
+        rows = contiguous(np.flatnonzero(state.has_ground))
+        if isinstance(rows, slice) or len(rows):
+            told = state.take(rows)
+            laid = ground.lay(told, self._legs, hips[rows], rotations[rows], dt[rows])
+            hips[rows], rotations[rows] = laid.hips, laid.rotations
+            state.put(rows, told)
+        delta[:, 1] += state.terrain[:, 0] - before_lift
         timings.note("feet")
         return self._block(state, delta, hips, rotations, contacts, after, jumps, timings)
 
@@ -219,17 +228,20 @@ class Tick:
         state.contacts[...] = contacts
         turn = quaternion.from_yaw(state.root_yaw)
         targets = np.where(state.locked[..., None], state.lock_point, np.nan)
+        targets[..., 1] += state.terrain[:, 1:3]
+        position = state.root_position.copy()
+        position[:, 1] += state.terrain[:, 0]
         simulated = np.concatenate(
             [
                 state.sim_position[:, :1],
-                state.root_position[:, 1:2],
+                position[:, 1:2],
                 state.sim_position[:, 1:],
                 state.sim_yaw[:, None],
             ],
             axis=1,
         )
         return Block(
-            np.concatenate([state.root_position, turn], axis=1).astype(np.float32),
+            np.concatenate([position, turn], axis=1).astype(np.float32),
             delta.astype(np.float32),
             hips,
             rotations,

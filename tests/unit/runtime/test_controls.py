@@ -115,7 +115,14 @@ def test_a_facing_turns_a_character_that_walks_elsewhere(runtime: Runtime) -> No
         (Sparse(10, filter="walk & idle"), "step.sparse[0].filter"),
         (Sparse(10, gait="hop"), "step.sparse[0].gait"),
         (Sparse(10, gait="walk", filter="walk"), "step.sparse[0].gait"),
-        (Sparse(10, ground=Ground()), "step.sparse[0].ground"),
+        (Sparse(10, ground=Ground(np.inf)), "step.sparse[0].ground"),
+        (Sparse(10, ground=Ground(normal=(0.0, 2.0, 0.0))), "step.sparse[0].ground.normal"),
+        (Sparse(10, ground=Ground(normal=(1.0, 0.0, 0.0))), "step.sparse[0].ground.normal"),
+        (Sparse(10, ground=Ground(foot_heights=np.zeros(3))), "step.sparse[0].ground.foot_heights"),
+        (
+            Sparse(10, ground=Ground(foot_normals=np.zeros((4, 3)))),
+            "step.sparse[0].ground.foot_normals",
+        ),
         (
             Sparse(10, root_correction=RootCorrection(GroundPose((NAN, 0, 0)))),
             "step.sparse[0].root_correction.root.position.x",
