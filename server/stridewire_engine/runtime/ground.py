@@ -59,8 +59,8 @@ def lay(state: Characters, legs: Legs, hips: Vectors, rotations: Quaternions, dt
     sink = _sink(state, legs, pose, ankles, dt)
     reach = np.maximum(_REACH * legs.length, np.linalg.norm(pose.hip - pose.ankle, axis=-1))
     low = turned.lowered(sink.astype(np.float32))
-    low, ankles = raise_heels(low, toes.astype(np.float32), reach.astype(np.float32))
-    bent, _ = bend(legs, low, rotations, ankles)
+    low, near = raise_heels(low, toes.astype(np.float32), reach.astype(np.float32))
+    bent, _ = bend(legs, low, rotations, near)
     hips = hips.copy()
     hips[:, 1] -= sink
     return Laid(lift.copy(), rise.copy(), hips, bent)
@@ -72,8 +72,8 @@ def _smooth(state: Characters, pose: LegPose, dt: Floats) -> None:
     points = np.concatenate([state.root_position[:, None, ::2], toes], axis=1)
     goal, slopes = _told(state, points)
     fresh = (~state.on_ground | (state.time <= dt))[:, None]
-    carried = state.terrain.copy()
-    carried[:, :3] += np.sum(slopes * (points - state.ground_points), axis=-1)
+    moved = np.sum(slopes * (points - state.ground_points), axis=-1)
+    carried = state.terrain + np.pad(moved, ((0, 0), (0, 4)))
     error: Floats = np.where(fresh, 0.0, carried - goal)
     speed: Floats = np.where(fresh, 0.0, state.terrain_speed)
     error, speed = decay_spring_damper_exact(error, speed, _HALFLIFE, dt[:, None])
