@@ -3,12 +3,13 @@ PYTHON ?= python3
 VENV ?= .venv
 PROTO_VENV ?= .proto-venv
 BIN := $(VENV)/bin
+PAGE := server/stridewire_server/page/source
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 # where the motion capture lies, for tests and checks that need it; they skip without
 STRIDEWIRE_DATA ?= $(abspath ../shared/data)
 export STRIDEWIRE_DATA PROTO_VENV
 
-.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge pictures reference image clean help
+.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge page pictures reference image clean help
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -54,6 +55,10 @@ show-judge: $(VENV)/.dev ## check how good streamed motion is, beside the captur
 
 pictures: $(VENV)/.server ## draw the animation of the README anew
 	$(BIN)/python tests/docs/pictures.py
+
+page: ## bundle the page of `stridewire play` anew after a change in its sources or in proto/
+	npm ci --silent --ignore-scripts --prefix $(PAGE)
+	npm run --silent build --prefix $(PAGE)
 
 reference: $(VENV)/.dev ## write docs/reference.md anew after a change in proto/ or a command
 	$(BIN)/python tests/docs/reference.py > docs/reference.md

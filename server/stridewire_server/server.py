@@ -20,6 +20,7 @@ from stridewire.v1 import (
 from stridewire_engine.networks.blend import blend_network
 from stridewire_engine.runtime import Runtime
 from stridewire_server.interceptors import ErrorInterceptor
+from stridewire_server.page.site import Site
 from stridewire_server.services.about import ServerService
 from stridewire_server.services.animation import AnimationService
 from stridewire_server.services.blend import BlendService
@@ -29,7 +30,8 @@ from stridewire_server.services.stitch import StitchService
 from stridewire_server.settings import ServerSettings
 from stridewire_server.streaming.sessions import Sessions
 from stridewire_server.ticker import Ticker
-from stridewire_server.websocket.door import Page, WebSocketDoor
+from stridewire_server.websocket.animate import ANIMATE, animate, find_layout
+from stridewire_server.websocket.door import Talk, WebSocketDoor
 
 _GRACE_S = 0.5
 """For calls that are still open when the time of open sessions is up."""
@@ -54,7 +56,7 @@ class AnimationServer:
     """
 
     def __init__(
-        self, runtime: Runtime, settings: ServerSettings, page: Page | None = None
+        self, runtime: Runtime, settings: ServerSettings, page: Site | None = None
     ) -> None:
         self._settings = settings
         self._ticker = Ticker(runtime)
@@ -67,7 +69,13 @@ class AnimationServer:
         )
         self._door: WebSocketDoor | None = None
         if settings.websocket:
-            self._door = WebSocketDoor(self._sessions, settings, runtime.limits, page)
+            talks: dict[str, Talk] = {ANIMATE: animate(self._sessions)}
+            self._door = WebSocketDoor(
+                settings,
+                runtime.limits.max_message_bytes,
+                talks if page is None else {**talks, **page.talks},
+                lambda path: find_layout(path) or (page.find(path) if page is not None else None),
+            )
         self.websocket_address = ""
         """Where the WebSocket door listens, once it does."""
 

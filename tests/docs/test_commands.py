@@ -1,9 +1,9 @@
 """What the documents show works: their commands and programs run, in order, as for a reader.
 
 A fenced block `console` holds commands after `$ `, and below each, where it is short, what it
-prints (not compared: figures change). A block `python` is a program. `stridewire serve` keeps
-running until the document ends. Blocks `sh` are not run; the `make` targets that they name must
-exist.
+prints (not compared: figures change). A block `python` is a program. `stridewire serve` and
+`stridewire play` keep running until the document ends. Blocks `sh` are not run; the `make` targets
+that they name must exist.
 """
 
 import os
@@ -19,7 +19,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 DOCUMENTS = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
-SERVER_PORT = 50051
+PORTS = {"stridewire serve": 50051, "stridewire play": 8484}
+"""Where the commands that keep running listen."""
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -71,8 +72,9 @@ def test_what_a_document_shows_runs(document: Path, tmp_path: Path) -> None:
     binaries = Path(sys.executable).parent
     environment = {**os.environ, "PATH": f"{binaries}:{os.environ['PATH']}"}
     to_run = programs(document)
-    if any(_is_server(words) for words in to_run) and _taken(SERVER_PORT):
-        pytest.skip(f"port {SERVER_PORT}, which the document uses, is taken on this machine")
+    for command, port in PORTS.items():
+        if any(words[-1].startswith(command) for words in to_run) and _taken(port):
+            pytest.skip(f"port {port}, which the document uses, is taken on this machine")
     with ExitStack() as running:
         for words in to_run:
             if _is_server(words):
@@ -99,7 +101,7 @@ def test_links_between_documents_lead_somewhere() -> None:
 
 
 def _is_server(words: list[str]) -> bool:
-    return words[-1].startswith("stridewire serve")
+    return words[-1].startswith(tuple(PORTS))
 
 
 def _run(words: list[str], folder: Path, environment: dict[str, str]) -> None:

@@ -1,9 +1,7 @@
-"""The door itself: one port, with the WebSocket at `/v1/animate` and its layout beside it."""
+"""The door itself: one port for WebSockets, and for what is read beside them."""
 
-import asyncio
-import json
 import logging
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
 from http import HTTPStatus
 
@@ -12,19 +10,18 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from stridewire._messages import Limits
 from stridewire_server.faults import as_error
 from stridewire_server.settings import ServerSettings, is_loopback
-from stridewire_server.streaming.sessions import Sessions
 from stridewire_server.websocket.admittance import Admittance, counted_connections
-from stridewire_server.websocket.layout import layout
-from stridewire_server.websocket.wire import WebSocketWire
+from stridewire_server.websocket.wire import refuse
 
-ANIMATE = "/v1/animate"
-LAYOUT = "/v1/layout.json"
+Talk = Callable[[ServerConnection], Awaitable[None]]
+"""What is talked over a WebSocket until either side ends it."""
+Find = Callable[[str], Response | None]
+"""From a path to what lies there; None where there is nothing."""
 
-_OPEN_S = 5.0
-"""Longest wait for a request, and from there for Open."""
+OPEN_S = 5.0
+"""Longest wait for a request, and from there for a first message."""
 _PING_S, _PONG_S = 2.0, 5.0
 """A silent client is given up, but not one whose main loop, which answers, loads a scene."""
 _CLOSE_S = 1.0
@@ -34,31 +31,28 @@ _MESSAGES_AHEAD = 1
 _MORE_CONNECTIONS = 64
 """Connections beyond the sessions: pages, and those that are just coming or going."""
 
-Page = Callable[[str], Response | None]
-"""What else is served: from a path to its answer; None where there is none."""
-
 
 class WebSocketDoor:
-    """Lets streams in through WebSockets; to be made and used in one event loop.
+    """Lets WebSockets in; to be made and used in one event loop.
 
     Args:
-        sessions: Of the server.
         settings: Where to listen and which origins to let in.
-        limits: Of messages.
-        page: What is served beside the streams.
+        max_message_bytes: Largest message that is taken.
+        talks: What is talked at each path.
+        find: Finds what is there to be read.
     """
 
     def __init__(
         self,
-        sessions: Sessions,
         settings: ServerSettings,
-        limits: Limits,
-        page: Page | None = None,
+        max_message_bytes: int,
+        talks: Mapping[str, Talk],
+        find: Find,
     ) -> None:
-        self._sessions = sessions
         self._settings = settings
-        self._limits = limits
-        self._page = page
+        self._max_message_bytes = max_message_bytes
+        self._talks = talks
+        self._find = find
         self._admittance = Admittance(settings.max_sessions + _MORE_CONNECTIONS, settings.origins)
         self._server: Server | None = None
 
@@ -79,11 +73,11 @@ class WebSocketDoor:
                 logger=_quiet(),
                 compression=None,
                 server_header=None,
-                open_timeout=_OPEN_S,
+                open_timeout=OPEN_S,
                 ping_interval=_PING_S,
                 ping_timeout=_PONG_S,
                 close_timeout=_CLOSE_S,
-                max_size=self._limits.max_message_bytes,
+                max_size=self._max_message_bytes,
                 max_queue=_MESSAGES_AHEAD,
             )
         except (OSError, ValueError, OverflowError) as error:
@@ -103,35 +97,36 @@ class WebSocketDoor:
     def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
         """Answer a request; None lets the WebSocket's handshake go on."""
         try:
-            return self._find(connection, request)
+            if refused := self._admittance.refusal(request):
+                return connection.respond(HTTPStatus.FORBIDDEN, f"{refused}\n")
+            path = path_of(request)
+            if path in self._talks:
+                return None
+            talks = " and ".join(self._talks)
+            absent = connection.respond(HTTPStatus.NOT_FOUND, f"nothing here; streams: {talks}\n")
+            return self._find(path) or absent
         except Exception as caught:
             told = as_error(caught, request.path)
             return connection.respond(HTTPStatus.INTERNAL_SERVER_ERROR, f"{told}\n")
 
-    def _find(self, connection: ServerConnection, request: Request) -> Response | None:
-        path = request.path.partition("?")[0]
-        if refused := self._admittance.refusal(request):
-            return connection.respond(HTTPStatus.FORBIDDEN, f"{refused}\n")
-        if path == ANIMATE:
-            return None
-        if path == LAYOUT:
-            return answer(json.dumps(layout(), indent=1).encode(), "application/json")
-        if self._page is not None and (found := self._page(path)) is not None:
-            return found
-        return connection.respond(HTTPStatus.NOT_FOUND, f"nothing here; streams are at {ANIMATE}\n")
-
     async def _serve(self, connection: ServerConnection) -> None:
-        wire = WebSocketWire(connection, _OPEN_S)
+        assert connection.request is not None
+        path = path_of(connection.request)
         with suppress(ConnectionClosed):
             try:
-                await self._sessions.serve(wire)
-            except (ConnectionClosed, asyncio.CancelledError):
+                await self._talks[path](connection)
+            except ConnectionClosed:
                 raise
             except Exception as caught:
-                await wire.refuse(as_error(caught, ANIMATE))
+                await refuse(connection, as_error(caught, path))
 
 
-def answer(body: bytes, kind: str) -> Response:
+def path_of(request: Request) -> str:
+    """Return the path of a request without its query."""
+    return request.path.partition("?")[0]
+
+
+def found(body: bytes, kind: str) -> Response:
     """Return a response with a body of some media type."""
     headers = Headers(
         {

@@ -24,7 +24,7 @@ ENCODING = {
     },
     "packed": "a repeated field of numbers is one value of wire type 2: the numbers side by side",
     "repeated": "any other repeated field is written once for each element",
-    "negative": "varints are unsigned here; -1 never occurs",
+    "negative": "an int32 below 0 is a varint of ten bytes: take 2**64 off it",
 }
 
 _XYZ = ["x", "y", "z"]

@@ -58,13 +58,14 @@ class WebSocketWire:
         """Send a message; returns when there is room for the next one."""
         await self._connection.send(response.SerializeToString())
 
-    async def refuse(self, error: StridewireError) -> None:
-        """End the stream with an error: its fields as an Error message, then code and reason."""
-        if error.violations:
-            listed = error.violations[:MAX_VIOLATIONS]
-            told = StreamError(0, listed, len(error.violations) - len(listed))
-            await self.write(encode_response(told))
-        await self._connection.close(close_code(error.code), _cut(str(error)))
+
+async def refuse(connection: ServerConnection, error: StridewireError) -> None:
+    """End a stream with an error: its fields as an Error message, then code and reason."""
+    if error.violations:
+        listed = error.violations[:MAX_VIOLATIONS]
+        told = StreamError(0, listed, len(error.violations) - len(listed))
+        await connection.send(encode_response(told).SerializeToString())
+    await connection.close(close_code(error.code), _cut(str(error)))
 
 
 def close_code(status: str) -> int:
