@@ -170,7 +170,7 @@ def _upright(rest: Mapping[str, Vectors]) -> Quaternions:
     if not stands:
         raise RigError(
             "with every local rotation zero the skeleton does not stand with its arms at its sides "
-            "or outstretched; give offsets of such a pose"
+            "or outstretched; give offsets of such a pose, in Python by stridewire.rest_pose"
         )
     return np.asarray(
         Rotation.from_matrix(np.stack([left, up, forward])).as_quat(scalar_first=True)
