@@ -46,6 +46,7 @@ FILE_WORDS = {
 """Tags of the whole clip by how words of file names and descriptions begin."""
 
 _MOST = 0.8
+_PIECE_S = 2.0
 _SMOOTHING_S = 0.5
 _SHORTEST_S = 0.25
 _AROUND_S = 0.7
@@ -121,6 +122,24 @@ def only_tagged(clip: Clip, names: Collection[str]) -> bool:
         if span.name in names:
             covered[span.start : span.end] = True
     return bool(covered.mean() >= _MOST)
+
+
+def without(clip: Clip, names: Collection[str]) -> list[Clip]:
+    """Return what is left of a clip where tags are cut out, in pieces of two seconds or more.
+
+    Args:
+        clip: With its tags.
+        names: Tags that are cut out. Where none of them holds the clip stays whole.
+    """
+    kept = np.ones(len(clip), bool)
+    for span in clip.tags:
+        if span.name in names:
+            kept[span.start : span.end] = False
+    if kept.all():
+        return [clip]
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], kept, [False]])))
+    runs = edges.reshape(-1, 2)[np.diff(edges.reshape(-1, 2)).ravel() >= _PIECE_S * clip.frame_rate]
+    return [clip.cut(a, b, f"{clip.name}-{i}") for i, (a, b) in enumerate(runs.tolist(), 1)]
 
 
 def local_velocity(pose: Pose, frame_rate: float) -> Floats:

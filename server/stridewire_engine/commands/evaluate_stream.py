@@ -17,7 +17,7 @@ from stridewire_engine.evaluation.pictures import draw_sheets, draw_table
 from stridewire_engine.evaluation.responses import measure_responses
 from stridewire_engine.evaluation.table import rows
 from stridewire_engine.runtime import TickSettings
-from stridewire_engine.runtime.admission import STITCHER_NAMES
+from stridewire_engine.stitchers import STITCHER_NAMES
 
 SCRIPTS = tuple(name for name in SCRIPT_NAMES if name != "walk-turn-stop")
 QUICK_SCRIPTS = ("stroll", "sprint", "u-turns", "idle")

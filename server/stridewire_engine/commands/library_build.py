@@ -20,7 +20,7 @@ from stridewire_engine.building.importing import (
 )
 from stridewire_engine.building.profiles import Profile, ProfileError, load_profile
 from stridewire_engine.building.sidecars import SidecarError, Splits, read_splits
-from stridewire_engine.building.tagging import only_tagged
+from stridewire_engine.building.tagging import only_tagged, without
 from stridewire_engine.commands.library_info import show
 from stridewire_engine.commands.matching_options import matching_options
 from stridewire_engine.library import LibraryError
@@ -44,6 +44,7 @@ _FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 @click.option("--split", "split", multiple=True, help="Take only files of it; needs --split-file.")
 @click.option("--split-file", type=_FILE, help="CSV with the columns data, subject and split.")
 @click.option("--tagged", multiple=True, metavar="TAG", help="Keep clips of nothing else.")
+@click.option("--without", "cut", multiple=True, metavar="TAG", help="Cut this out of clips.")
 @click.option("--jobs", default=2, show_default=True, type=click.IntRange(1, 64), help="Processes.")
 @matching_options
 @click.option("--licence", default="", help="Licence of the motion.")
@@ -59,6 +60,7 @@ def build(
     split: tuple[str, ...],
     split_file: Path | None,
     tagged: tuple[str, ...],
+    cut: tuple[str, ...],
     jobs: int,
     licence: str,
     credit: str,
@@ -81,6 +83,9 @@ def build(
     if tagged:
         clips = [clip for clip in clips if only_tagged(clip, tagged)]
         click.echo(f"kept {len(clips)} clips of {', '.join(tagged)}")
+    if cut:
+        clips = [piece for clip in clips for piece in without(clip, cut)]
+        click.echo(f"kept {len(clips)} clips without {', '.join(cut)}")
     if not clips:
         raise click.ClickException("no clip is left; the reasons are above")
     click.echo(f"writing {len(clips)} clips{' and their mirrored copies' if mirror else ''} …")

@@ -24,7 +24,7 @@ from stridewire_engine.matching.gaits import gait_filter
 from stridewire_engine.matching.schema import Schema
 from stridewire_engine.matching.search import Matcher
 from stridewire_engine.runtime.characters import MAX_TRAJECTORY_POINTS
-from stridewire_engine.stitchers import STITCHERS
+from stridewire_engine.stitchers import STITCHER_NAMES
 
 _MAX_COORDINATE = 1e6
 _MAX_ID = 2**32 - 1
@@ -36,8 +36,6 @@ _MAX_CREDITS = 3600
 _MAX_WEIGHT = 1e6
 _MIN_HEIGHT_M, _MAX_HEIGHT_M = 0.5, 3.0
 NOT_YET = "is not implemented yet; leave it out"
-
-STITCHER_NAMES = tuple(stitcher.name for stitcher in STITCHERS)
 
 
 def check_open(message: Open, limits: Limits, matcher: Matcher) -> None:

@@ -26,7 +26,7 @@ def build(rows: Characters, matcher: Matcher, playing: Indices, future: Predicti
         future: Where the simulated roots will be at the schema's times, in the world.
     """
     features = matcher.library.features[playing].astype(np.float64)
-    settled = np.array([stitcher.settled_s for stitcher in STITCHERS])[rows.stitcher]
+    settled = np.array([stitcher.settled_s for stitcher in STITCHERS])[rows.stitched_by]
     hiding = ((rows.since_jump < settled) | (rows.clip < 0))[:, None]
     for channel in matcher.schema.channels:
         columns = matcher.schema.slice(channel)

@@ -47,6 +47,7 @@ from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.output import Output
 from stridewire_engine.runtime.session import Session
 from stridewire_engine.runtime.settings import TickSettings
+from stridewire_engine.stitchers import STITCHER_NAMES
 
 Recorder = Callable[[Open, Opened], SessionWriter]
 """From what was asked for and answered to the file that a session is recorded in."""
@@ -136,7 +137,7 @@ class Runtime:
             message.format,
             message.detail,
             message.seed,
-            admission.STITCHER_NAMES[0],
+            STITCHER_NAMES[0],
         )
         output = Output(message, crowd.library.skeleton)
         opened = Opened(
@@ -227,7 +228,7 @@ class Runtime:
             libraries=tuple(library.info() for library in self.libraries.values()),
             models={"blend": blend_network().model.hash},
             limits=self._limits,
-            stitchers=admission.STITCHER_NAMES,
+            stitchers=STITCHER_NAMES,
             sessions=len(self._sessions),
             characters=sum(len(crowd) for crowd in self._crowds.values()),
         )

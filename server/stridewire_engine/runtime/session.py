@@ -28,6 +28,7 @@ from stridewire_engine.runtime.inside import look
 from stridewire_engine.runtime.output import Output
 from stridewire_engine.runtime.roster import Roster
 from stridewire_engine.runtime.tick import Block
+from stridewire_engine.stitchers import STITCHER_NAMES
 
 _MAX_VIOLATIONS = 100
 _UPDATABLE = ("stitcher", "foot_lock", "filter", "weights")
@@ -200,8 +201,8 @@ class Session:
     def _set(self, row: int, spec: CharacterSpec, names: Iterable[str]) -> None:
         state = self.crowd.state
         if "stitcher" in names:
-            chosen = spec.stitcher or admission.STITCHER_NAMES[0]
-            state.stitcher[row] = admission.STITCHER_NAMES.index(chosen)
+            chosen = spec.stitcher or STITCHER_NAMES[0]
+            state.stitcher[row] = STITCHER_NAMES.index(chosen)
         if "foot_lock" in names:
             state.foot_lock[row] = spec.foot_lock
         if "filter" in names:

@@ -18,14 +18,23 @@ from stridewire_engine.runtime.choice import Jumps, Sets
 from stridewire_engine.runtime.lookahead import LegTracks, legs_ahead
 from stridewire_engine.runtime.settings import TickSettings
 from stridewire_engine.stitchers import (
+    AUTO,
     STITCH_COLUMNS,
+    STITCHER_NAMES,
     STITCHERS,
+    Motion,
     Roots,
     Sample,
     StitchState,
+    auto,
     stance,
 )
 from stridewire_engine.stitchers.legs import Legs
+from stridewire_engine.stitchers.stitcher import turn_to_world
+
+_AUTO_FRAMES = 24
+"""So many frames of the new clip tell which stitcher hides a transition best."""
+_SPRING, _STANCE = (STITCHER_NAMES.index(name) for name in ("spring", "stance"))
 
 
 @dataclass(frozen=True)
@@ -157,12 +166,13 @@ class Tick:
         rows.pace[...], rows.goes_back[...] = 1.0, False
         target = sampling.sample_motion(library, new, rows.pace, self._tracks.toes)
         offsets, roots = _stitch_state(rows), Roots(rows.root_position, rows.root_yaw)
+        by = self._stitchers(rows, new, source, target)
         plants = np.array([stitcher.plants_feet for stitcher in STITCHERS])
-        leaves = plants[rows.stitched_by] & ~plants[rows.stitcher]
+        leaves = plants[rows.stitched_by] & ~plants[by]
         if leaves.any():
             stance.leave(offsets, source, self._legs, leaves)
         for index, stitcher in enumerate(STITCHERS):
-            mine = np.flatnonzero(rows.stitcher == index)
+            mine = np.flatnonzero(by == index)
             if len(mine):
                 part = offsets.take(mine)
                 stitcher.begin(part, source.take(mine), target.take(mine), roots.take(mine))
@@ -174,13 +184,34 @@ class Tick:
         rows.root_offset[begins] = 0.0
         # there is nothing to hide where a character begins
         rows.stitch_time[...] = np.where(begins, np.inf, 0.0)
-        rows.stitched_by[...] = rows.stitcher
+        rows.stitched_by[...] = by
         rows.clip[...], rows.clip_time[...] = jumps.to_clip, jumps.to_time
         rows.since_jump[...] = 0.0
         rows.recent[:, 1:], rows.recent[:, 0] = rows.recent[:, :-1].copy(), jumps.to_row
         rows.recent_time[:, 1:] = rows.recent_time[:, :-1].copy()
         rows.recent_time[:, 0] = rows.time
         state.put(jumps.characters, rows)
+
+    def _stitchers(
+        self, rows: Characters, new: sampling.Moments, source: Motion, target: Motion
+    ) -> Indices:
+        """Return which stitcher `(M,)` hides the transition of each jumping character."""
+        chosen = rows.stitcher == AUTO
+        if not chosen.any():
+            return rows.stitcher
+        library, roots = self._matcher.library, Roots(rows.root_position, rows.root_yaw)
+        ahead = np.arange(_AUTO_FRAMES)
+        clip = library.clip_of[new.rows]
+        last = library.clip_starts[clip] + library.clip_frames[clip] - 1
+        at = np.minimum(new.nearest[:, None] + ahead, last[:, None])
+        gap = rows.toe_shown - roots.to_world(target.toes)
+        speed = rows.toe_gap_speed + turn_to_world(
+            source.toes_velocity - target.toes_velocity, rows.root_yaw
+        )
+        spring = auto.spring_will_do(
+            gap, speed, library.contacts[at][..., 1::2], ahead / library.frame_rate
+        )
+        return np.where(chosen, np.where(spring, _SPRING, _STANCE), rows.stitcher)
 
     def _stitch(
         self, state: Characters, sample: Sample, motion: Floats, delta: Floats, dt: Floats

@@ -22,7 +22,9 @@ from stridewire_engine.stitchers.stitcher import (
 )
 
 __all__ = [
+    "AUTO",
     "STITCHERS",
+    "STITCHER_NAMES",
     "STITCH_COLUMNS",
     "Guide",
     "LegsAhead",
@@ -40,4 +42,9 @@ STITCHERS: tuple[Stitcher, ...] = (
     DeadBlend(),
     Stance(),
 )
-"""All stitchers, the default first; a character holds an index into this tuple."""
+"""All stitchers, the default first; a character holds an index into this tuple, or `AUTO`."""
+
+AUTO = len(STITCHERS)
+"""Stands for the better of two at each transition; see `auto`."""
+STITCHER_NAMES = (*(stitcher.name for stitcher in STITCHERS), "auto")
+"""What a caller can ask for, by index."""

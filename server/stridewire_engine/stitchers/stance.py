@@ -10,7 +10,7 @@ import numpy as np
 
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Quaternions, Vectors
-from stridewire.motion.springs import damper_exact, decay_spring_damper_exact, spring_damper_exact
+from stridewire.motion.springs import damper_exact, spring_damper_exact
 from stridewire_engine.stitchers import footing, offsets, replanting
 from stridewire_engine.stitchers.footing import Toes
 from stridewire_engine.stitchers.legs import Legs, bend, leg_pose, raise_heels, turn_feet
@@ -34,6 +34,8 @@ _BRAKE_FROM_S, _BRAKE_S = 0.13, 0.1
 _BRAKE_HALFLIFE = 0.06
 _STRONGEST_PULL = 50.0
 """Towards the clip's toe, m/s²."""
+_STRONGEST_FALL = 60.0
+"""Towards the height of the clip's toe, m/s²."""
 _STRONGEST_HIPS, _STRONGEST_TURN = 8.0, 25.0
 """Towards the clip's hips and joints, m/s² and rad/s²; wide offsets take longer."""
 _SWING_SHORTEST, _SWING_LONGEST = 0.06, 0.4
@@ -125,10 +127,11 @@ class Stance:
             _LANDING_HALFLIFE,
             dt,
         )
-        height, rise = decay_spring_damper_exact(
-            state.toe_gap[..., 1] - state.toe_lift,
+        off = state.toe_gap[..., 1] - state.toe_lift
+        height, rise = footing.decay(
+            off,
             state.toe_gap_speed[..., 1] - state.toe_lift_speed,
-            _HEIGHT_HALFLIFE,
+            np.maximum(_HEIGHT_HALFLIFE, _gentle_halflife(off[..., None], _STRONGEST_FALL)),
             dt[:, None],
         )
         self._lift(state, sample, target, dt)

@@ -1,16 +1,17 @@
 """Tags: speed, direction, turning and posture tell them; names of files add what they cannot."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from stridewire.motion import quaternion
-from stridewire.motion.clip import Clip
+from stridewire.motion.clip import Clip, TagSpan
 from stridewire.motion.mirror import mirror_clip
 from stridewire.motion.root import extract_root
 from stridewire.motion.skeleton import REFERENCE
-from stridewire_engine.building.tagging import file_tags, measured_tags, only_tagged, tag
+from stridewire_engine.building.tagging import file_tags, measured_tags, only_tagged, tag, without
 
 
 def gliding(
@@ -140,3 +141,16 @@ def test_mirrored_motion_has_mirrored_tags() -> None:
 def test_words_of_names_become_tags(words: str, tags: set[str]) -> None:
     """Beginnings of words count, not letters within them; walking is measured, not read."""
     assert {span.name for span in file_tags(words, 100)} == tags
+
+
+def test_spans_are_cut_out_of_clips() -> None:
+    """What is left comes in pieces of two seconds or more, contacts and other tags with them."""
+    walk = replace(gliding(1.2), tags=())
+    frames = len(walk)
+    assert without(walk, ["low"]) == [walk]
+    spans = (TagSpan("walk", 0, frames), TagSpan("low", 150, 170), TagSpan("low", 200, frames))
+    (piece,) = without(replace(walk, tags=spans), ["low"])
+    assert len(piece) == 150
+    assert piece.name == f"{walk.name}-1"
+    assert piece.tags == (TagSpan("walk", 0, 150),)
+    assert without(replace(walk, tags=spans), ["walk"]) == []
