@@ -1,5 +1,5 @@
 """The servers that these tests talk to."""
 
-from serving import loop_thread, serve, small_library
+from serving import door, loop_thread, serve, small_library
 
-__all__ = ["loop_thread", "serve", "small_library"]
+__all__ = ["door", "loop_thread", "serve", "small_library"]
