@@ -9,7 +9,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 STRIDEWIRE_DATA ?= $(abspath ../shared/data)
 export STRIDEWIRE_DATA PROTO_VENV
 
-.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge page site pictures reference image clean help
+.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge page page-pictures site pictures reference image clean help
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -58,6 +58,9 @@ site: $(VENV)/.dev ## build the documents as web pages, build/site/index.html, a
 
 pictures: $(VENV)/.server ## draw the animation of the README anew
 	$(BIN)/python tests/docs/pictures.py
+
+page-pictures: $(VENV)/.dev ## take the pictures of the page anew; needs Chromium
+	$(BIN)/python tests/docs/page_pictures.py
 
 page: ## bundle the page of `stridewire play` anew after a change in its sources or in proto/
 	npm ci --silent --ignore-scripts --prefix $(PAGE)

@@ -47,7 +47,7 @@ export class Stage {
     // `#quality=2` in the address chooses one for good
     const chosen = /quality=([0-3])/.exec(location.hash);
     this.pinned = chosen !== null;
-    this.#choose(Number(chosen?.[1] ?? 0));
+    this.choose(Number(chosen?.[1] ?? 0));
     new ResizeObserver(() => this.#fit()).observe(canvas);
     this.#fit();
   }
@@ -80,10 +80,11 @@ export class Stage {
   // Lowers the quality where frames are drawn slowly for a second or so.
   #keepUp(dt) {
     this.pace += 0.05 * (dt - this.pace);
-    if (!this.pinned && this.pace > SLOW_S && this.quality < QUALITIES.length - 1) this.#choose(this.quality + 1);
+    if (!this.pinned && this.pace > SLOW_S && this.quality < QUALITIES.length - 1) this.choose(this.quality + 1);
   }
 
-  #choose(quality) {
+  // Draws with a quality of the list from here on.
+  choose(quality) {
     this.quality = quality;
     this.pace = 0;
     const { ratio, shadows } = QUALITIES[quality];
@@ -118,8 +119,16 @@ export class Stage {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.fov = width < height ? 58 : 42;
+    // the target lies in the middle of what panel and timeline leave free
+    const [right, bottom] = [covered("aside", "offsetWidth", width), covered("footer", "offsetHeight", height)];
+    this.camera.setViewOffset(width, height, right / 2, bottom / 2, width, height);
     this.camera.updateProjectionMatrix();
   }
+}
+
+// Returns how much of the view an element at its edge takes, at most a third.
+function covered(name, size, whole) {
+  return Math.min(document.querySelector(name)?.[size] ?? 0, whole / 3);
 }
 
 // A tile of five metres by five: a thin line each metre, a stronger one at its edge.

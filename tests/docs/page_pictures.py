@@ -1,0 +1,137 @@
+"""Takes the pictures of the page that the documents show, anew: `make page-pictures`.
+
+Needs Chromium and Playwright. On a machine without a graphics card it takes minutes: all that is
+seen is drawn with shadows on the processor.
+"""
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from browsing import Visit, absent, visit
+from stridewire.testing import serve
+
+IMAGES = Path(__file__).parents[2] / "docs" / "images"
+WIDE = (1280, 760)
+PHONE = (390, 780)
+
+
+@contextmanager
+def playing(*files: Path) -> Iterator[str]:
+    """Run `stridewire play`; gives the address of its page."""
+    command = [sys.executable, "-m", "stridewire", "play", "--no-browser", "--port", "0", "--json"]
+    with subprocess.Popen([*command, *files], stdout=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        try:
+            yield json.loads(server.stdout.readline())["url"]
+        finally:
+            server.terminate()
+
+
+def shoot(visiting: Visit, name: str) -> None:
+    """Write a picture of what is shown, drawn as well as can be."""
+    visiting.ask("stage.choose(0);")
+    visiting.page.wait_for_timeout(4000.0)
+    path = IMAGES / f"{name}.png"
+    visiting.page.screenshot(path=path, timeout=120_000.0)
+    print(path.relative_to(IMAGES.parents[1]))
+
+
+def drive(visiting: Visit, seconds: float, *keys: str) -> None:
+    """Hold keys until so many seconds more were played, the camera turning half way."""
+    for key in keys:
+        visiting.page.keyboard.down(key)
+    end = visiting.ask("return play.history.end;") + seconds
+    visiting.wait(f"play.history.end > {end - 0.5 * seconds}", 300.0)
+    visiting.ask("stage.look.yaw -= 1.2;")
+    visiting.wait(f"play.history.end > {end}", 300.0)
+
+
+def driven(url: str) -> None:
+    """One character that runs a curve, looked back at in the middle of a transition."""
+    with visit(url, WIDE) as visiting:
+        visiting.wait("play.drawn", 300.0)
+        visiting.page.get_by_label("raw ghost").check(timeout=120_000.0)
+        visiting.page.locator("h1").click()
+        drive(visiting, 9.0, "KeyW", "ShiftLeft")
+        visiting.ask("play.cursor = play.history.transitions.at(-2).time + 0.1;")
+        visiting.ask("Object.assign(stage.look, { distance: 4.6, pitch: 0.3 });")
+        visiting.ask(
+            "const [w, , y] = play.drawn.root.slice(3);"
+            " stage.look.yaw = 2 * Math.atan2(y, w) + 0.8;"
+        )
+        visiting.page.wait_for_timeout(1500.0)
+        shoot(visiting, "play")
+
+
+def crowded(url: str) -> None:
+    """A crowd of 64."""
+    with visit(url, WIDE) as visiting:
+        visiting.wait("play.drawn", 300.0)
+        visiting.page.get_by_label("crowd of 64").check(timeout=120_000.0)
+        visiting.page.locator("h1").click()
+        visiting.ask("Object.assign(stage.look, { distance: 10, pitch: 0.5 });")
+        drive(visiting, 6.0, "KeyW")
+        shoot(visiting, "play-crowd")
+
+
+def on_a_phone(url: str) -> None:
+    """The same at phone width."""
+    phone = {"has_touch": True, "is_mobile": True, "device_scale_factor": 2}
+    with visit(url, PHONE, **phone) as visiting:
+        visiting.wait("play.drawn", 300.0)
+        drive(visiting, 5.0, "KeyW")
+        shoot(visiting, "play-phone")
+
+
+def side_by_side(address: str, folder: Path) -> None:
+    """Two files at the same moment.
+
+    Args:
+        address: Of a server that makes them.
+        folder: Where they go.
+    """
+    files = []
+    for script in ("walk-turn-stop", "u-turns"):
+        files.append(folder / f"{script}.bvh")
+        command = [
+            sys.executable,
+            "-m",
+            "stridewire",
+            "stream",
+            "--script",
+            script,
+            "--seconds",
+            "6",
+        ]
+        subprocess.run([*command, "--address", address, "--out", files[-1]], check=True)
+    with playing(*files) as url, visit(url, WIDE) as visiting:
+        visiting.wait("play.time > 0 && play.subjects.every(({ bodies }) => bodies)", 300.0)
+        visiting.page.get_by_label("time").fill("2.6")
+        shoot(visiting, "play-files")
+
+
+def main() -> int:
+    """Take all pictures, or those that are named."""
+    if reason := absent():
+        print(reason)
+        return 1
+    wanted = sys.argv[1:]
+    with playing() as url:
+        for take in (driven, crowded, on_a_phone):
+            if not wanted or take.__name__ in wanted:
+                take(url)
+    if not wanted or side_by_side.__name__ in wanted:
+        with serve() as address, TemporaryDirectory() as folder:
+            side_by_side(address, Path(folder))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
