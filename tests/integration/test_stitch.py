@@ -33,7 +33,7 @@ from stridewire_engine.stitching.checks import MAX_CLIPS
 NODE = """
 import grpc from "@grpc/grpc-js";
 import loader from "@grpc/proto-loader";
-const options = { includeDirs: ["../../proto"] };
+const options = { includeDirs: ["../../proto"], oneofs: true };
 const definition = loader.loadSync("stridewire/v1/stitch.proto", options);
 const { StitchService } = grpc.loadPackageDefinition(definition).stridewire.v1;
 const client = new StitchService("ADDRESS", grpc.credentials.createInsecure());
