@@ -109,3 +109,13 @@ def shipped_model(name: str) -> OnnxModel:
             "stridewire again, or export it with `stridewire export`"
         )
     return model
+
+
+def is_listed(name: str) -> bool:
+    """Tell whether a model is among those that come with the package.
+
+    Args:
+        name: Of its file, without ending.
+    """
+    listed = files(WEIGHTS) / SUMS
+    return listed.is_file() and f"{name}.onnx" in listed.read_text().split()

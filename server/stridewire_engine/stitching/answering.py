@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from stridewire._errors import InvalidRequestError, Violation
 from stridewire._messages import StitchPart, StitchQuery
 from stridewire.motion.clip import Clip
+from stridewire_engine.networks.rmr.refiner import refiner_if_shipped
 from stridewire_engine.stitching.checks import check_clips, check_query
 from stridewire_engine.stitching.sources import BvhReader, Libraries, clip_of, one_skeleton
 from stridewire_engine.stitching.stitch import Stitching
@@ -41,7 +42,7 @@ def stitching(paths: Sequence[str], clips: Sequence[Clip], query: StitchQuery) -
     """
     one_skeleton(paths, clips)
     _refuse(*check_query(query), *check_clips(query, paths, clips))
-    return Stitching(clips, query)
+    return Stitching(clips, query, refiner_if_shipped())
 
 
 def _refuse(*wrong: Violation) -> None:

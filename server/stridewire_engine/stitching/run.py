@@ -7,6 +7,7 @@ import numpy as np
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Floats, Indices, Quaternions, Vectors
 from stridewire_engine.stitchers import (
+    Guide,
     LegsAhead,
     Motion,
     Roots,
@@ -14,8 +15,11 @@ from stridewire_engine.stitchers import (
     Stitcher,
     StitchState,
 )
+from stridewire_engine.stitchers.stitcher import turn_to_root
 from stridewire_engine.stitching.chains import Chains
 from stridewire_engine.stitching.plan import Plan
+
+_PLANTED = 0.5
 
 
 class Shown(NamedTuple):
@@ -27,8 +31,26 @@ class Shown(NamedTuple):
     """`(C, L, J, 4)`."""
 
 
-def run(plan: Plan, stitcher: Stitcher, chains: Chains) -> Shown:
-    """Let a stitcher hide the seams of the chains."""
+class Guides(NamedTuple):
+    """How feet are to go instead of as the clips' do, for each frame of a plan, in the world."""
+
+    planted: Floats
+    """`(T, 2)` share from 0, swinging, to 1, planted."""
+    toe_offset: Vectors
+    """`(T, 2, 3)` metres to add to the clips' toes."""
+    foot_turn: Vectors
+    """`(T, 2, 3)` rotation vectors."""
+
+
+def run(plan: Plan, stitcher: Stitcher, chains: Chains, guides: Guides | None = None) -> Shown:
+    """Let a stitcher hide the seams of the chains.
+
+    Args:
+        plan: The clips laid end to end.
+        stitcher: Any; one that plants feet where there are guides.
+        chains: Some of the plan's.
+        guides: For every frame of the plan.
+    """
     count, longest = len(chains), int((chains.ends - chains.starts).max())
     joints = len(plan.skeleton)
     state = StitchState.fresh(count, joints)
@@ -44,9 +66,9 @@ def run(plan: Plan, stitcher: Stitcher, chains: Chains) -> Shown:
         frames = np.minimum(at, chains.ends - 1)
         jumping = np.flatnonzero(is_seam[frames] & (at < chains.ends))
         if len(jumping):
-            _jump(plan, stitcher, state, jumping, frames[jumping])
+            _jump(plan, stitcher, state, jumping, frames[jumping], guides)
         state.stitch_time += dt
-        sample = _sample(plan, stitcher, frames)
+        sample = _sample(plan, stitcher, frames, guides)
         made.hips[:, step], made.rotations[:, step] = stitcher.apply(state, sample, dt)
     return made
 
@@ -63,13 +85,22 @@ def _enter(plan: Plan, state: StitchState, starts: Indices) -> None:
 
 
 def _jump(
-    plan: Plan, stitcher: Stitcher, state: StitchState, rows: Indices, frames: Indices
+    plan: Plan,
+    stitcher: Stitcher,
+    state: StitchState,
+    rows: Indices,
+    frames: Indices,
+    guides: Guides | None,
 ) -> None:
     """Hand over to the clips that begin at `frames`, as of the frame before."""
     part = state.take(rows)
     source = _motion(plan, frames - 1, frames - 2)
     target = _one_frame_before(_motion(plan, frames, frames + 1), 1.0 / plan.frame_rate)
-    stitcher.begin(part, source, target, _roots(plan, frames - 1))
+    roots = _roots(plan, frames - 1)
+    if guides is not None:
+        led = turn_to_root(guides.toe_offset[frames - 1], roots.yaw)
+        target = target._replace(toes=target.toes + led)
+    stitcher.begin(part, source, target, roots)
     part.stitch_time[...] = 0.0
     state.put(rows, part)
 
@@ -100,19 +131,31 @@ def _one_frame_before(motion: Motion, dt: float) -> Motion:
     )
 
 
-def _sample(plan: Plan, stitcher: Stitcher, frames: Indices) -> Sample:
-    return Sample(
+def _sample(plan: Plan, stitcher: Stitcher, frames: Indices, guides: Guides | None) -> Sample:
+    ahead = None
+    if stitcher.looks_ahead:
+        ahead = _ahead(plan, np.array(stitcher.looks_ahead), frames, guides)
+    sample = Sample(
         plan.hips[frames],
         plan.rotations[frames],
         plan.contacts[frames],
         _roots(plan, frames),
         frames == 0,
         plan.legs,
-        _ahead(plan, np.array(stitcher.looks_ahead), frames) if stitcher.looks_ahead else None,
+        ahead,
     )
+    if guides is None:
+        return sample
+    yaw = sample.roots.yaw
+    guide = Guide(
+        guides.planted[frames],
+        turn_to_root(guides.toe_offset[frames], yaw),
+        turn_to_root(guides.foot_turn[frames], yaw),
+    )
+    return sample._replace(contacts=guide.planted > _PLANTED, guide=guide)
 
 
-def _ahead(plan: Plan, times: Floats, frames: Indices) -> LegsAhead:
+def _ahead(plan: Plan, times: Floats, frames: Indices, guides: Guides | None) -> LegsAhead:
     """Return where the legs of the plan will be, in the frames of the roots as they are."""
     then = frames[:, None] + np.maximum(np.round(times * plan.frame_rate).astype(np.intp), 1)
     then = np.minimum(then, len(plan) - 1)
@@ -121,7 +164,12 @@ def _ahead(plan: Plan, times: Floats, frames: Indices) -> LegsAhead:
     hips, ankles, toes = (
         _seen_from(plan, roots, then, track) for track in (pose.hip, pose.ankle, pose.toe)
     )
-    return LegsAhead(times, hips, ankles, toes, plan.contacts[then])
+    if guides is None:
+        return LegsAhead(times, hips, ankles, toes, plan.contacts[then])
+    count = len(frames)
+    led = turn_to_root(guides.toe_offset[then].reshape(count, -1, 3), roots.yaw)
+    led = led.reshape(toes.shape)
+    return LegsAhead(times, hips, ankles + led, toes + led, guides.planted[then] > _PLANTED)
 
 
 def _seen_from(plan: Plan, roots: Roots, then: Indices, track: Vectors) -> Vectors:

@@ -6,7 +6,12 @@ from pathlib import Path
 import numpy as np
 
 from stridewire.motion.skeleton import REFERENCE
-from stridewire_engine.networks.onnx_model import ModelError, OnnxModel, shipped_model
+from stridewire_engine.networks.onnx_model import (
+    ModelError,
+    OnnxModel,
+    is_listed,
+    shipped_model,
+)
 from stridewire_engine.networks.rmr import features
 from stridewire_engine.networks.rmr.guidance import Guidance, guidance
 from stridewire_engine.networks.rmr.plans import TOKEN, WINDOW, Plans
@@ -77,3 +82,12 @@ def shipped_refiner() -> Refiner:
     refiner = Refiner(shipped_model("rmr"))
     refiner.model.run(np.zeros((1, WINDOW, features.INPUTS), np.float32))
     return refiner
+
+
+def refiner_if_shipped() -> Refiner | None:
+    """Return the refiner that ships; None in an installation whose list of models has none.
+
+    Raises:
+        ModelError: If it is listed, but damaged or missing.
+    """
+    return shipped_refiner() if is_listed("rmr") else None
