@@ -15,7 +15,6 @@ OPEN = {
     "open.resume_token": {"resume_token": "r"},
 }
 SPEC = {
-    "responsiveness": {"responsiveness": 0.0},
     "rate_divider": {"rate_divider": 2},
 }
 

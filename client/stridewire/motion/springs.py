@@ -5,8 +5,8 @@ Spring-Roll-Call*. `halflife` is the time `h` in the damping `d = 4 ln2 / h`. **
 it a true half-life**; a critically damped spring at rest has 59.7 % of its offset left after `h`,
 half after 1.21 h, 10 % after 2.81 h and 1 % after 4.79 h.
 
-Arguments are arrays of one shape or scalars that broadcast; `dt` in seconds may differ by row. A
-scalar `dt` keeps the dtype of the arrays, so the tick stays in float32.
+Arguments are arrays of one shape or scalars that broadcast; `dt` in seconds may differ by row, in
+springs `halflife`, too. A scalar `dt` keeps the dtype of the arrays, so the tick stays in float32.
 """
 
 from typing import Any
@@ -18,9 +18,9 @@ from stridewire.motion.array_types import Floats
 _LN2 = float(np.log(2.0))
 
 
-def halflife_to_damping(halflife: float) -> float:
+def halflife_to_damping(halflife: Floats | float) -> Any:
     """Return the damping `d = 4 ln2 / h` in 1/s; a halflife of at least 1e-5 s is assumed."""
-    return 4.0 * _LN2 / max(halflife, 1e-5)
+    return _weak(4.0 * _LN2 / np.maximum(halflife, 1e-5))
 
 
 def damping_to_halflife(damping: float) -> float:
@@ -40,7 +40,7 @@ def damper_exact(x: Floats, goal: Floats, halflife: float, dt: Floats | float) -
 
 
 def spring_damper_exact(
-    x: Floats, v: Floats, goal: Floats, halflife: float, dt: Floats | float
+    x: Floats, v: Floats, goal: Floats, halflife: Floats | float, dt: Floats | float
 ) -> tuple[Floats, Floats]:
     """Move position `x` with velocity `v` towards `goal`, critically damped.
 
@@ -55,7 +55,7 @@ def spring_damper_exact(
 
 
 def decay_spring_damper_exact(
-    x: Floats, v: Floats, halflife: float, dt: Floats | float
+    x: Floats, v: Floats, halflife: Floats | float, dt: Floats | float
 ) -> tuple[Floats, Floats]:
     """Let an offset `x` with velocity `v` decay to zero, critically damped."""
     y = 0.5 * halflife_to_damping(halflife)
@@ -66,7 +66,12 @@ def decay_spring_damper_exact(
 
 
 def velocity_spring_exact(
-    x: Floats, v: Floats, a: Floats, goal_velocity: Floats, halflife: float, dt: Floats | float
+    x: Floats,
+    v: Floats,
+    a: Floats,
+    goal_velocity: Floats,
+    halflife: Floats | float,
+    dt: Floats | float,
 ) -> tuple[Floats, Floats, Floats]:
     """Move a position whose velocity springs to `goal_velocity`: the character of the Roll-Call.
 

@@ -5,6 +5,7 @@ import json
 from dataclasses import asdict, dataclass, replace
 
 from stridewire_engine.runtime import TickSettings
+from stridewire_engine.runtime.response import NEUTRAL
 
 REPORT_SEEDS = tuple(range(100, 120))
 """Seeds of reports; tuning uses others."""
@@ -39,11 +40,15 @@ class Cell:
     settings: TickSettings = _DEFAULTS
     weights: tuple[tuple[str, float], ...] = ()
     """Of channels; the others have the schema's."""
+    responsiveness: float = NEUTRAL
+    """From 0, quality, to 1, response."""
 
     @property
     def tick(self) -> "Cell":
         """All that the tick itself depends on: cells where it is equal can share their ticks."""
-        return replace(self, script="", stitch="", foot_lock=True, seeds=(), weights=())
+        return replace(
+            self, script="", stitch="", foot_lock=True, seeds=(), weights=(), responsiveness=NEUTRAL
+        )
 
     def key(self, library_hash: str, code_hash: str) -> str:
         """Return a name for the cache that changes with anything the result depends on."""

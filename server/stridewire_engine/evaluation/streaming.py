@@ -133,6 +133,7 @@ def begin(matcher: Matcher, cell: Cell, wanted: Wanted, settings: TickSettings) 
     """Return characters side by side that look where they are to go; searches are staggered."""
     count = wanted.velocity.shape[1]
     state = Characters.allocate(count, len(matcher.library.skeleton), len(matcher.schema.channels))
+    state.responsiveness[:] = cell.responsiveness
     given = dict(cell.weights)
     state.weights[...] = [given.get(c.name, c.weight) for c in matcher.schema.channels]
     lots = [np.random.default_rng(seed).random(PER_SEED) for seed in cell.seeds]

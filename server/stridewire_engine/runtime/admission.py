@@ -68,8 +68,6 @@ def check_open(message: Open, limits: Limits, matcher: Matcher) -> None:
 
 def later_fields(spec: CharacterSpec) -> Iterator[str]:
     """Yield the fields of a character that belong to later versions and are set."""
-    if spec.responsiveness is not None:
-        yield "responsiveness"
     if spec.rate_divider > 1:
         yield "rate_divider"
 
@@ -99,6 +97,7 @@ def check_spec(
     yield from check_stitcher(f"{path}.stitcher", spec.stitcher)
     yield from check_filter(f"{path}.filter", spec.filter, matcher)
     yield from check_weights(f"{path}.weights", spec.weights, matcher.schema)
+    yield from check_responsiveness(f"{path}.responsiveness", spec)
 
 
 def check_stitcher(path: str, name: str) -> Iterator[Violation]:
@@ -135,6 +134,13 @@ def check_weights(path: str, weights: Mapping[str, float], schema: Schema) -> It
             yield Violation(f"{path}[{name!r}]", f"{weight}; allowed are 0 to {_MAX_WEIGHT:g}")
     if weights and not merged_weights(weights, schema).any():
         yield Violation(path, "all channels have weight 0, so nothing could be compared")
+
+
+def check_responsiveness(path: str, spec: CharacterSpec) -> Iterator[Violation]:
+    """Yield what is wrong with a character's responsiveness; None means the default."""
+    given = spec.responsiveness
+    if given is not None and not 0.0 <= given <= 1.0:
+        yield Violation(path, f"{given}; allowed are 0, for quality, to 1, for response")
 
 
 def merged_weights(weights: Mapping[str, float], schema: Schema) -> Floats:

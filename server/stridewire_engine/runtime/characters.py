@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
+from stridewire_engine.runtime.response import NEUTRAL
 from stridewire_engine.stitchers.columns import allocate, column
 
 MAX_TRAJECTORY_POINTS = 32
@@ -41,6 +42,8 @@ class Characters:
     """Number of the candidate set in the crowd's table; 0 is all."""
     weights: Floats = column("C", dtype=np.float64)
     """Of the schema's channels."""
+    responsiveness: Floats = column(dtype=np.float64, fill=NEUTRAL)
+    """From 0, quality, to 1, response."""
 
     # the simulated root
     sim_position: Floats = column(2, dtype=np.float64)

@@ -14,6 +14,7 @@ from stridewire_engine.matching.search import Found, Matcher
 from stridewire_engine.runtime import query, sampling
 from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.runtime.intent import Prediction
+from stridewire_engine.runtime.response import multiples
 from stridewire_engine.runtime.settings import TickSettings
 
 Sets = Mapping[int, CandidateSet]
@@ -113,6 +114,7 @@ def choose(
     stay = matcher.costs(queries, weights, playing[:, None]).sum(axis=-1)[:, 0]
     stay += matcher.bias[playing]
     bias = settings.continuing_bias * matcher.typical_cost + settings.least_improvement * stay
+    bias *= multiples(rows.responsiveness).bias
     must = np.isin(why, _MUST)
     jump = np.flatnonzero(found.rows[:, 0] >= 0)
     jump = jump[(must | (found.costs[:, 0] + bias < stay))[jump]]
@@ -195,6 +197,8 @@ def _excluded(
 
 def _weights(matcher: Matcher, rows: Characters, starting: Flags) -> Floats:
     weights = rows.weights.copy()
+    trajectories = np.array([channel.is_trajectory for channel in matcher.schema.channels])
+    weights[:, trajectories] *= np.asarray(multiples(rows.responsiveness).trajectory)[:, None]
     # a character that begins has velocities and a way to go, but no pose yet
     channels = matcher.schema.channels
     poses = np.array([not c.is_trajectory and c.kind is not ChannelKind.VELOCITY for c in channels])

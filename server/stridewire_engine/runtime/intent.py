@@ -7,6 +7,7 @@ import numpy as np
 from stridewire.motion.array_types import Floats
 from stridewire.motion.springs import spring_damper_exact, velocity_spring_exact, wrap_angle
 from stridewire_engine.runtime.characters import Characters
+from stridewire_engine.runtime.response import multiples
 from stridewire_engine.runtime.settings import TickSettings
 
 _TURNING_SPEED = 0.2
@@ -56,19 +57,20 @@ def predict(state: Characters, goal: Floats, times: Floats, settings: TickSettin
         settings: Half-lives.
     """
     ahead = times[None, :, None]
+    velocity_halflife, facing_halflife = _halflives(state, settings)
     positions, _, _ = velocity_spring_exact(
         state.sim_position[:, None],
         state.sim_velocity[:, None],
         state.sim_acceleration[:, None],
         goal[:, None],
-        settings.velocity_halflife,
+        velocity_halflife[:, None, None],
         ahead,
     )
     yaws, _ = spring_damper_exact(
         state.sim_yaw[:, None],
         state.sim_yaw_velocity[:, None],
         _near(state.goal_yaw, state.sim_yaw)[:, None],
-        settings.facing_halflife,
+        facing_halflife[:, None],
         times[None],
     )
     if state.has_path.any():
@@ -81,12 +83,13 @@ def predict(state: Characters, goal: Floats, times: Floats, settings: TickSettin
 
 def advance(state: Characters, goal: Floats, dt: Floats, settings: TickSettings) -> None:
     """Move the simulated root by `dt` `(N,)` seconds towards the goals."""
+    velocity_halflife, facing_halflife = _halflives(state, settings)
     position, velocity, acceleration = velocity_spring_exact(
         state.sim_position,
         state.sim_velocity,
         state.sim_acceleration,
         goal,
-        settings.velocity_halflife,
+        velocity_halflife[:, None],
         dt[:, None],
     )
     state.sim_position[...] = position
@@ -96,12 +99,21 @@ def advance(state: Characters, goal: Floats, dt: Floats, settings: TickSettings)
         state.sim_yaw,
         state.sim_yaw_velocity,
         _near(state.goal_yaw, state.sim_yaw),
-        settings.facing_halflife,
+        facing_halflife,
         dt,
     )
     state.sim_yaw[...] = yaw
     state.sim_yaw_velocity[...] = turning
     state.path_elapsed += dt
+
+
+def _halflives(state: Characters, settings: TickSettings) -> tuple[Floats, Floats]:
+    """Return the half-lives `(N,)` of velocity and heading."""
+    factor = multiples(state.responsiveness)
+    return (
+        np.asarray(settings.velocity_halflife * factor.velocity_halflife),
+        np.asarray(settings.facing_halflife * factor.facing_halflife),
+    )
 
 
 def to_root_frame(state: Characters, prediction: Prediction) -> Prediction:

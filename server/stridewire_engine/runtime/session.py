@@ -26,13 +26,14 @@ from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.events import TickEvents
 from stridewire_engine.runtime.inside import look
 from stridewire_engine.runtime.output import Output
+from stridewire_engine.runtime.response import NEUTRAL
 from stridewire_engine.runtime.roster import Roster
 from stridewire_engine.runtime.tick import Block
 from stridewire_engine.stitchers import STITCHER_NAMES
 
 _MAX_VIOLATIONS = 100
-_UPDATABLE = ("stitcher", "foot_lock", "filter", "weights")
-_UPDATABLE_LATER = ("responsiveness", "rate_divider")
+_UPDATABLE = ("stitcher", "foot_lock", "filter", "weights", "responsiveness")
+_UPDATABLE_LATER = ("rate_divider",)
 
 
 class Session:
@@ -197,6 +198,8 @@ class Session:
             yield from admission.check_filter(f"{path}.filter", spec.filter, matcher)
         if "weights" in update.mask:
             yield from admission.check_weights(f"{path}.weights", spec.weights, matcher.schema)
+        if "responsiveness" in update.mask:
+            yield from admission.check_responsiveness(f"{path}.responsiveness", spec)
 
     def _set(self, row: int, spec: CharacterSpec, names: Iterable[str]) -> None:
         state = self.crowd.state
@@ -210,6 +213,9 @@ class Session:
         if "weights" in names:
             schema = self.crowd.matcher.schema
             state.weights[row] = admission.merged_weights(spec.weights, schema)
+        if "responsiveness" in names:
+            given = spec.responsiveness
+            state.responsiveness[row] = NEUTRAL if given is None else given
 
 
 def _error(step: int, violations: Iterable[Violation]) -> StreamError | None:

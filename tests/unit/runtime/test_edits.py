@@ -62,7 +62,13 @@ def test_a_new_character_does_not_disturb_the_others(small_library: Library) -> 
         (Edit(update=[CharacterUpdate(CharacterSpec(10), ())]), "edit.update[0].mask"),
         (Edit(update=[CharacterUpdate(CharacterSpec(10), ("root",))]), "edit.update[0].mask"),
         (
-            Edit(update=[CharacterUpdate(CharacterSpec(10), ("responsiveness",))]),
+            Edit(update=[CharacterUpdate(CharacterSpec(10, rate_divider=2), ("rate_divider",))]),
+            "edit.update[0].spec.rate_divider",
+        ),
+        (
+            Edit(
+                update=[CharacterUpdate(CharacterSpec(10, responsiveness=1.5), ("responsiveness",))]
+            ),
             "edit.update[0].spec.responsiveness",
         ),
         (

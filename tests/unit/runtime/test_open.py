@@ -88,10 +88,6 @@ def test_limits_themselves_are_allowed(runtime: Runtime, changes: dict) -> None:
     ("changes", "field"),
     [
         ({"resume_token": "x"}, "open.resume_token"),
-        (
-            {"characters": [CharacterSpec(1, responsiveness=0.0)]},
-            "open.characters[0].responsiveness",
-        ),
         ({"characters": [CharacterSpec(1, rate_divider=2)]}, "open.characters[0].rate_divider"),
     ],
 )
