@@ -54,6 +54,7 @@ def test_all_other_fields_work(raw_stream: Call) -> None:
         height_m=1.8,
         filter="walk | idle",
         weights={"trajectory-position": 2.0},
+        responsiveness=0.7,
     )
     opened = pb.Open(
         library="small",

@@ -3,6 +3,7 @@
 import click
 
 from stridewire_engine.commands.evaluate_blend import blend
+from stridewire_engine.commands.evaluate_critic import critic
 from stridewire_engine.commands.evaluate_stream import stream
 from stridewire_engine.commands.evaluate_tune import tune
 
@@ -13,5 +14,6 @@ def evaluate() -> None:
 
 
 evaluate.add_command(blend)
+evaluate.add_command(critic)
 evaluate.add_command(stream)
 evaluate.add_command(tune)

@@ -50,7 +50,7 @@ def replay_command(
     """
     session = SessionFile.open(file)
     alike = not (against or stitch or weights)
-    libraries = [open_library(folder) for folder in against] or [_original(session, library)]
+    libraries = [open_library(folder) for folder in against] or [original(session, library)]
     variants = [Variant(name, dict(map(_weight, weights))) for name in stitch or ("",)]
     before = Track.of(recorded(session))
     rows = []
@@ -67,7 +67,7 @@ def replay_command(
         ctx.exit(1)
 
 
-def _original(session: SessionFile, folder: Path | None) -> Library:
+def original(session: SessionFile, folder: Path | None) -> Library:
     """Open the library that the session was recorded over.
 
     Raises:

@@ -1,7 +1,8 @@
 """The critic: a classifier that tries to tell seams from captured motion.
 
 Windows of half a second, root-local positions, velocities and accelerations of the joints; trained
-on other people than it is quoted on. An AUC of 0.5 means that it cannot tell.
+on other people than it is quoted on. An AUC of 0.5 means that it cannot tell. Intervals draw whole
+takes, since windows of one take are much alike.
 """
 
 from collections.abc import Sequence
@@ -18,9 +19,16 @@ from stridewire_engine.evaluation.streaming import RATE, Stream
 WINDOW = 30
 _STRIDE = 3
 """Every third frame of a window is a feature."""
-_MOST_WINDOWS = 3000
+_MOST_WINDOWS = 2000
 _COMPONENTS, _TREES = 60, 80
-_QUIET_FRAMES = 60
+_QUIET_FRAMES = 10
+_DRAWS = 500
+_KINDS = 9
+"""Features of a joint at a time: position, velocity, acceleration."""
+LEAST_WINDOWS = 100
+"""Fewer of a kind are not judged."""
+LEGS = ("UpLeg", "Leg", "Foot", "Toe")
+"""Endings of the names of the joints of the legs, for a critic that sees no others."""
 
 
 class Windows(NamedTuple):
@@ -30,6 +38,15 @@ class Windows(NamedTuple):
     character: Indices
 
 
+class Sample(NamedTuple):
+    """W windows of one kind of motion."""
+
+    features: Floats
+    """`(W, D)`."""
+    takes: Indices
+    """`(W,)` number of the take that each is of."""
+
+
 @dataclass(frozen=True)
 class Verdict:
     """How well the critic tells a way of making motion from captured motion."""
@@ -37,8 +54,8 @@ class Verdict:
     auc: float
     low: float
     high: float
-    surest: Windows
-    """The windows that it is surest about, the surest first."""
+    surest: Indices
+    """The windows to be told, by how sure it is of them, the surest first."""
 
 
 def seam_windows(stream: Stream) -> Windows:
@@ -49,54 +66,74 @@ def seam_windows(stream: Stream) -> Windows:
 
 
 def quiet_windows(stream: Stream) -> Windows:
-    """Return windows whose whole length lies a second or more behind a transition."""
-    quiet = stream.since >= _QUIET_FRAMES
-    length = len(quiet) - WINDOW
-    whole = quiet[:length] & quiet[WINDOW - 1 : WINDOW - 1 + length]
-    frame, character = np.nonzero(whole[::WINDOW])
+    """Return windows without a transition, the last one at least ten frames before them."""
+    # so long before the last frame of a window no transition has come
+    whole = stream.since[WINDOW - 1 :: WINDOW] >= WINDOW - 1 + _QUIET_FRAMES
+    frame, character = np.nonzero(whole)
     return Windows(frame * WINDOW, character)
 
 
-def stream_features(stream: Stream, windows: Windows) -> Floats:
-    """Return features `(W, D)` of windows of a stream."""
+def stream_sample(stream: Stream, captured: Captured, windows: Windows) -> Sample:
+    """Return windows of a stream; their take is that of the clip in their middle."""
     frames = windows.frame[:, None] + np.arange(WINDOW)
     who = windows.character[:, None]
-    return _features(
+    features = _features(
         stream.positions[frames, who],
         stream.pose.root_position[frames, who],
         stream.pose.root_rotation[frames, who],
     )
+    middle = stream.rows[windows.frame + WINDOW // 2, windows.character]
+    return Sample(features, takes_of(captured, middle))
 
 
-def captured_features(captured: Captured, rows: Indices) -> Floats:
-    """Return features `(W, D)` of the captured windows that begin at rows, clip by clip."""
+def captured_sample(captured: Captured, rows: Indices) -> Sample:
+    """Return the captured windows that begin at rows, clip by clip."""
     library = captured.library
     last = (library.clip_starts + library.clip_frames)[library.clip_of[rows]]
     rows = rows[rows + WINDOW <= last]
     frames = rows[:, None] + np.arange(WINDOW)
-    return _features(
+    features = _features(
         captured.positions[frames].astype(np.float64),
         library.root_position[frames].astype(np.float64),
         quaternion.from_yaw(library.root_yaw[frames].astype(np.float64)),
     )
+    return Sample(features, takes_of(captured, rows))
+
+
+def takes_of(captured: Captured, rows: Indices) -> Indices:
+    """Return the take of rows: clips of one source, mirrored copies among them, are one take."""
+    names = [clip.source for clip in captured.library.clips]
+    _, numbers = np.unique(names, return_inverse=True)
+    return np.asarray(numbers[captured.library.clip_of[rows]])
+
+
+def columns_of(captured: Captured, parts: Sequence[str]) -> Indices:
+    """Return the features of the joints whose names end in one of some words."""
+    joints = captured.library.skeleton.names
+    chosen = np.flatnonzero([name.endswith(tuple(parts)) for name in joints])
+    every = np.arange(dimensions(captured)).reshape(-1, len(joints), _KINDS)
+    return np.asarray(every[:, chosen].reshape(-1))
+
+
+def dimensions(captured: Captured) -> int:
+    """Return the number of features of a window."""
+    return len(range(0, WINDOW, _STRIDE)) * len(captured.library.skeleton) * _KINDS
 
 
 def judge(
-    seams_train: Floats,
-    captured_train: Floats,
-    seams: Floats,
-    captured: Floats,
-    windows: Windows,
+    positive_train: Sample,
+    negative_train: Sample,
+    positive: Sample,
+    negative: Sample,
     seed: int = 0,
 ) -> Verdict:
-    """Train on one pair of sets and quote on another.
+    """Train on one pair of samples and quote on another.
 
     Args:
-        seams_train: `(W, D)` windows around transitions, of training subjects.
-        captured_train: `(W, D)` captured windows of training subjects.
-        seams: `(W, D)` of test subjects.
-        captured: `(W, D)` of test subjects.
-        windows: Of `seams`.
+        positive_train: Windows to be told, of training people.
+        negative_train: Captured windows of training people.
+        positive: Windows to be told, of test people.
+        negative: Captured windows of test people.
         seed: Of the classifier and the bootstrap.
 
     Raises:
@@ -104,40 +141,48 @@ def judge(
     """
     from sklearn.decomposition import PCA
     from sklearn.ensemble import HistGradientBoostingClassifier
-    from sklearn.metrics import roc_auc_score
     from sklearn.pipeline import make_pipeline
     from sklearn.preprocessing import StandardScaler
 
     rng = np.random.default_rng(seed)
-    parts = [_thinned(part, rng) for part in (seams_train, captured_train)]
+    parts = [thinned(part, rng).features for part in (positive_train, negative_train)]
     labels = np.repeat([1, 0], [len(part) for part in parts])
+    components = min(_COMPONENTS, *np.concatenate(parts).shape)
     model = make_pipeline(
         StandardScaler(),
-        PCA(_COMPONENTS, random_state=seed),
+        PCA(components, svd_solver="randomized", random_state=seed),
         HistGradientBoostingClassifier(
             max_iter=_TREES, l2_regularization=1.0, class_weight="balanced", random_state=seed
         ),
     )
     model.fit(np.concatenate(parts), labels)
-    positive, negative = (model.predict_proba(part)[:, 1] for part in (seams, captured))
+    scores = [model.predict_proba(part.features)[:, 1] for part in (positive, negative)]
+    low, high = _interval(scores, (positive.takes, negative.takes), rng)
+    return Verdict(_auc(*scores), low, high, np.argsort(-scores[0]))
+
+
+def _interval(
+    scores: Sequence[Floats], takes: Sequence[Indices], rng: np.random.Generator
+) -> tuple[float, float]:
+    """Return the 95 % bootstrap interval of an AUC; takes are drawn, not windows."""
     drawn = []
-    for _ in range(200):
-        a, b = rng.choice(positive, len(positive)), rng.choice(negative, len(negative))
-        drawn.append(_auc(roc_auc_score, a, b))
-    order = np.argsort(-positive)
+    for _ in range(_DRAWS):
+        parts = []
+        for score, take in zip(scores, takes, strict=True):
+            names, number = np.unique(take, return_inverse=True)
+            times = rng.multinomial(len(names), np.full(len(names), 1.0 / len(names)))
+            parts.append(np.repeat(score, times[number]))
+        drawn.append(_auc(*parts))
     low, high = np.percentile(drawn, (2.5, 97.5))
-    return Verdict(
-        _auc(roc_auc_score, positive, negative),
-        float(low),
-        float(high),
-        Windows(windows.frame[order], windows.character[order]),
-    )
+    return float(low), float(high)
 
 
-def _auc(score: object, positive: Floats, negative: Floats) -> float:
-    assert callable(score)
-    labels = np.repeat([1, 0], [len(positive), len(negative)])
-    return float(score(labels, np.concatenate([positive, negative])))
+def _auc(positive: Floats, negative: Floats) -> float:
+    """Return how often a positive one scores above a negative one, ties as halves."""
+    ordered = np.sort(negative)
+    below = np.searchsorted(ordered, positive, "left")
+    not_above = np.searchsorted(ordered, positive, "right")
+    return float((below + not_above).mean() / (2.0 * len(negative)))
 
 
 def _features(positions: Vectors, root: Vectors, turn: Quaternions) -> Floats:
@@ -151,12 +196,15 @@ def _features(positions: Vectors, root: Vectors, turn: Quaternions) -> Floats:
     return flat.reshape(len(local), int(np.prod(flat.shape[1:])))
 
 
-def _thinned(features: Floats, rng: np.random.Generator) -> Floats:
-    if len(features) <= _MOST_WINDOWS:
-        return features
-    return features[np.sort(rng.choice(len(features), _MOST_WINDOWS, replace=False))]
+def thinned(sample: Sample, rng: np.random.Generator) -> Sample:
+    """Return at most so many windows that a classifier is trained within seconds."""
+    count = len(sample.takes)
+    if count <= _MOST_WINDOWS:
+        return sample
+    kept = np.sort(rng.choice(count, _MOST_WINDOWS, replace=False))
+    return Sample(sample.features[kept], sample.takes[kept])
 
 
-def joined(parts: Sequence[Floats]) -> Floats:
-    """Join features of several streams."""
-    return np.concatenate(list(parts))
+def joined(parts: Sequence[Sample]) -> Sample:
+    """Join windows of several streams."""
+    return Sample(*(np.concatenate(part) for part in zip(*parts, strict=True)))

@@ -9,6 +9,7 @@ from stridewire._messages import TransitionReason
 from stridewire.motion.array_types import Flags, Floats, Indices
 from stridewire.motion.springs import wrap_angle
 from stridewire_engine.matching.candidates import CandidateSet
+from stridewire_engine.matching.explanation import Exclusion
 from stridewire_engine.matching.schema import ChannelKind
 from stridewire_engine.matching.search import Found, Matcher
 from stridewire_engine.runtime import query, sampling
@@ -77,6 +78,28 @@ def due(
     return reason
 
 
+class Considered(NamedTuple):
+    """What the characters that searched found, and whether they jump; arrays of M rows."""
+
+    characters: Indices
+    """Indices of the characters in the tick's rows."""
+    playing: Indices
+    """`(M,)` rows of the library."""
+    queries: Floats
+    weights: Floats
+    excluded: Indices
+    found: Found
+    """`(M, 1)` best other moments."""
+    stay_costs: Floats
+    """`(M, C)` of going on, by channel, without the bias of the row that plays."""
+    stay: Floats
+    """`(M,)` of going on, with it."""
+    bias: Floats
+    """By how much staying has to be beaten."""
+    reason: Indices
+    jump: Flags
+
+
 def choose(
     state: Characters,
     matcher: Matcher,
@@ -100,6 +123,41 @@ def choose(
         settings: Biases and intervals.
     """
     library = matcher.library
+    seen = consider(state, matcher, sets, prediction, reason, settings)
+    _restart_clocks(state, seen.characters, settings)
+    jump = np.flatnonzero(seen.jump)
+    who = seen.characters[jump]
+    target = seen.found.rows[jump, 0]
+    clip = library.clip_of[target]
+    return Jumps(
+        characters=who,
+        from_clip=state.clip[who],
+        from_time=state.clip_time[who],
+        to_clip=clip.astype(np.int32),
+        to_time=(target - library.clip_starts[clip]) / library.frame_rate,
+        to_row=target,
+        cost=seen.found.costs[jump, 0],
+        stay_cost=seen.stay[jump],
+        bias=seen.bias[jump],
+        channel_costs=seen.found.channel_costs[jump, 0],
+        reason=seen.reason[jump],
+        queries=seen.queries[jump],
+        weights=seen.weights[jump],
+        excluded=seen.excluded[jump],
+        sets=state.filter[who],
+    )
+
+
+def consider(
+    state: Characters,
+    matcher: Matcher,
+    sets: Sets,
+    prediction: Prediction,
+    reason: Indices,
+    settings: TickSettings,
+) -> Considered:
+    """Search for the characters that have a reason, and say who is to jump; nothing is changed."""
+    library = matcher.library
     searching = np.flatnonzero(reason)
     rows = state.take(searching)
     why = reason[searching]
@@ -111,33 +169,21 @@ def choose(
     excluded = _excluded(matcher, rows, playing, starting, settings)
     found, satisfied = _search(matcher, sets, rows.filter, queries, weights, excluded, playing)
     why = np.where(~satisfied & ~starting, TransitionReason.FILTER_CHANGE, why)
-    stay = matcher.costs(queries, weights, playing[:, None]).sum(axis=-1)[:, 0]
-    stay += matcher.bias[playing]
+    stay_costs = matcher.costs(queries, weights, playing[:, None])[:, 0]
+    stay = stay_costs.sum(axis=-1) + matcher.bias[playing]
     bias = settings.continuing_bias * matcher.typical_cost + settings.least_improvement * stay
     bias *= multiples(rows.responsiveness).bias
     must = np.isin(why, _MUST)
-    jump = np.flatnonzero(found.rows[:, 0] >= 0)
-    jump = jump[(must | (found.costs[:, 0] + bias < stay))[jump]]
-    _restart_clocks(state, searching, settings)
-    target = found.rows[jump, 0]
-    clip = library.clip_of[target]
-    return Jumps(
-        characters=searching[jump],
-        from_clip=rows.clip[jump],
-        from_time=rows.clip_time[jump],
-        to_clip=clip.astype(np.int32),
-        to_time=(target - library.clip_starts[clip]) / library.frame_rate,
-        to_row=target,
-        cost=found.costs[jump, 0],
-        stay_cost=stay[jump],
-        bias=bias[jump],
-        channel_costs=found.channel_costs[jump, 0],
-        reason=why[jump],
-        queries=queries[jump],
-        weights=weights[jump],
-        excluded=excluded[jump],
-        sets=rows.filter[jump],
+    jump = (found.rows[:, 0] >= 0) & (must | (found.costs[:, 0] + bias < stay))
+    return Considered(
+        searching, playing, queries, weights, excluded, found, stay_costs, stay, bias, why, jump
     )
+
+
+def exclusions(rows: Indices) -> list[Exclusion]:
+    """Return what a character's excluded rows `(E,)` stand for."""
+    why = (*EXCLUDED_BECAUSE, *[RECENTLY_CHOSEN] * (len(rows) - len(EXCLUDED_BECAUSE)))
+    return [Exclusion(int(row), text) for row, text in zip(rows, why, strict=True) if row >= 0]
 
 
 _MUST = (TransitionReason.CLIP_END, TransitionReason.START, TransitionReason.FILTER_CHANGE)

@@ -17,6 +17,10 @@ _MOST_SETS = 256
 """From so many filters on, those that no character uses any more are forgotten."""
 
 
+Watch = Callable[[Characters, Floats], None]
+"""Told of rows and their `dt`; it changes neither."""
+
+
 class Crowd:
     """Owns the state arrays of a library's characters and steps the rows that are due."""
 
@@ -39,6 +43,8 @@ class Crowd:
         self.sets: dict[int, CandidateSet] = {0: self.matcher.candidates.everything}
         """Candidate sets by the number under which rows name them."""
         self._numbers = count(1)
+        self.watch: Watch | None = None
+        """Sees the rows that are due, controls applied, before each tick."""
 
     def __len__(self) -> int:
         """Return the number of characters."""
@@ -90,6 +96,8 @@ class Crowd:
         """
         which = contiguous(np.concatenate(rows))
         part = self.state.take(which)
+        if self.watch is not None:
+            self.watch(part, np.concatenate(dt))
         block = self._tick.step(part, np.concatenate(dt), self.sets)
         if not isinstance(which, slice):
             self.state.put(which, part)

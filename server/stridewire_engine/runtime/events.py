@@ -17,9 +17,9 @@ from stridewire._messages import (
     TransitionReason,
 )
 from stridewire.motion.array_types import Indices
-from stridewire_engine.matching.explanation import Exclusion, explain
+from stridewire_engine.matching.explanation import explain
 from stridewire_engine.matching.search import Matcher
-from stridewire_engine.runtime.choice import EXCLUDED_BECAUSE, RECENTLY_CHOSEN, Jumps, Sets
+from stridewire_engine.runtime.choice import Jumps, Sets, exclusions
 from stridewire_engine.runtime.tick import Block
 
 _RUNNERS_UP = 2
@@ -81,18 +81,12 @@ class TickEvents(Sequence[Event]):
 
     def _with_costs(self, transition: Transition, jumps: Jumps, i: int) -> Transition:
         """Add what the choice cost, what else fitted and what was excluded."""
-        why = (*EXCLUDED_BECAUSE, *[RECENTLY_CHOSEN] * (jumps.excluded.shape[1] - 2))
-        exclusions = [
-            Exclusion(int(row), reason)
-            for row, reason in zip(jumps.excluded[i], why, strict=True)
-            if row >= 0
-        ]
         # the chosen moment comes first among the matches
         matches, excluded = explain(
             self.matcher,
             jumps.queries[i],
             jumps.weights[i],
-            exclusions,
+            exclusions(jumps.excluded[i]),
             1 + _RUNNERS_UP,
             self.sets[int(jumps.sets[i])],
         )
