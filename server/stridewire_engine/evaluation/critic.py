@@ -125,6 +125,7 @@ def judge(
     negative_train: Sample,
     positive: Sample,
     negative: Sample,
+    *,
     seed: int = 0,
 ) -> Verdict:
     """Train on one pair of samples and quote on another.
