@@ -144,6 +144,7 @@ def judge(
     from sklearn.ensemble import HistGradientBoostingClassifier
     from sklearn.pipeline import make_pipeline
     from sklearn.preprocessing import StandardScaler
+    from threadpoolctl import threadpool_limits
 
     rng = np.random.default_rng(seed)
     parts = [thinned(part, rng).features for part in (positive_train, negative_train)]
@@ -156,8 +157,10 @@ def judge(
             max_iter=_TREES, l2_regularization=1.0, class_weight="balanced", random_state=seed
         ),
     )
-    model.fit(np.concatenate(parts), labels)
-    scores = [model.predict_proba(part.features)[:, 1] for part in (positive, negative)]
+    # a second thread waits for the first by spinning, which on a busy machine costs minutes
+    with threadpool_limits(1):
+        model.fit(np.concatenate(parts), labels)
+        scores = [model.predict_proba(part.features)[:, 1] for part in (positive, negative)]
     low, high = _interval(scores, (positive.takes, negative.takes), rng)
     return Verdict(_auc(*scores), low, high, np.argsort(-scores[0]))
 
