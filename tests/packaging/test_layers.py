@@ -56,6 +56,7 @@ THIRD_PARTY = {
         "onnxruntime",
         "scipy",
         "sklearn",
+        "threadpoolctl",
     },
     "stridewire_server": {
         "click",

@@ -28,6 +28,8 @@ _COMMAND_S, _LONGEST_S = 3.0, 4.0
 _TURN = 0.5 * np.pi
 _TURNING_RATE = 0.3
 _MOVING = 0.5
+_SPRING_RISE = 3.358
+"""`y t` between 10 % and 90 % of a critically damped step."""
 
 
 @dataclass(frozen=True)
@@ -101,6 +103,21 @@ def library_times(library: Library, change: Change) -> Floats:
         else:
             times += accelerations(speed, change)
     return np.array(times)
+
+
+def fitted_halflife(library: Library, change: Change) -> float | None:
+    """Return the half-life of a control spring that does a change as fast as the library does.
+
+    A critically damped spring `1 - (1 + y t) e^(-y t)` goes from 10 % to 90 % within 3.36 / y, with
+    `y = 2 ln2 / h`; as in `measure_responses`, the library's time is its 25th percentile.
+
+    Returns:
+        Seconds; None where the library holds too few such events.
+    """
+    events = library_times(library, change)
+    if len(events) < LEAST_EVENTS:
+        return None
+    return float(np.percentile(events, 25.0)) * 2.0 * float(np.log(2.0)) / _SPRING_RISE
 
 
 def accelerations(speed: Floats, change: Change) -> list[float]:

@@ -12,10 +12,13 @@ from stridewire_engine.evaluation.cell import KEPT_OUT, Cell
 from stridewire_engine.evaluation.figures import Figures
 
 Measurements = Mapping[Cell, Measurement]
+_PARTS = ("tuned", "kept-out")
 _JERKS = {"toe_jerk": "toe_jerk_ratio", "knee_jerk": "knee_jerk_ratio"}
 
 
-def rows(library: str, measurements: Measurements) -> Iterator[dict[str, Any]]:
+def rows(
+    library: str, measurements: Measurements, *, by_script: bool = True
+) -> Iterator[dict[str, Any]]:
     """Yield one flat row for each cell and block, then those pooled over scripts.
 
     The captured row of a script is what the frames played by the first stitcher measure in their
@@ -24,10 +27,13 @@ def rows(library: str, measurements: Measurements) -> Iterator[dict[str, Any]]:
     Args:
         library: Its name.
         measurements: Of the cells.
+        by_script: Whether each script has rows of its own.
     """
     scripts = list(dict.fromkeys(cell.script for cell in measurements))
     ways = list(dict.fromkeys(replace(cell, script="all") for cell in measurements))
     groups: list[tuple[str, tuple[str, ...]]] = [(script, (script,)) for script in scripts]
+    if not by_script:
+        groups.clear()
     if len(scripts) > 1:
         groups.append(("all", tuple(scripts)))
         groups += [(name, part) for name, part in _parts(scripts) if part]
@@ -41,13 +47,13 @@ def rows(library: str, measurements: Measurements) -> Iterator[dict[str, Any]]:
             if not shown:
                 yield _captured(library, name, way, parts)
                 shown = True
-            for block in BLOCKS:
+            for block in BLOCKS if name not in _PARTS else BLOCKS[:1]:
                 yield _row(library, name, way, block, parts)
 
 
 def _parts(scripts: Sequence[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    yield "tuned", tuple(s for s in scripts if s not in KEPT_OUT)
-    yield "kept-out", tuple(s for s in scripts if s in KEPT_OUT)
+    yield _PARTS[0], tuple(s for s in scripts if s not in KEPT_OUT)
+    yield _PARTS[1], tuple(s for s in scripts if s in KEPT_OUT)
 
 
 def pooled(parts: Sequence[Measurement], block: str) -> Figures:

@@ -21,6 +21,7 @@ from stridewire_engine.evaluation.bench import Measurement
 from stridewire_engine.evaluation.cell import TUNING_SEEDS, Cell
 from stridewire_engine.evaluation.table import pooled
 from stridewire_engine.runtime import TickSettings
+from stridewire_engine.runtime.response import NEUTRAL
 
 TUNED_SCRIPTS = ("stroll", "sprint", "stop-and-go", "u-turns", "strafe", "circle", "idle")
 SETTING_RANGES = {
@@ -56,6 +57,7 @@ class Candidate:
     settings: TickSettings
     weights: tuple[tuple[str, float], ...] = ()
     """Of channels; the others have the schema's."""
+    responsiveness: float = NEUTRAL
 
     def data(self) -> dict[str, float]:
         """Return what a search may change, as plain numbers for JSON."""
@@ -129,6 +131,7 @@ def try_out(
         Cell(
             script, stitch="stance", seeds=seeds, seconds=_SECONDS,
             settings=candidate.settings, weights=candidate.weights,
+            responsiveness=candidate.responsiveness,
         )
         for script in TUNED_SCRIPTS
     ]  # fmt: skip
