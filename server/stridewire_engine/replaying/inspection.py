@@ -22,11 +22,11 @@ from stridewire._messages import (
 )
 from stridewire.formats.session_file import Advance, Control, SessionFile
 from stridewire.motion import kinematics
-from stridewire.motion.array_types import Floats, Indices
+from stridewire.motion.array_types import Floats
 from stridewire.motion.clip import Pose
 from stridewire_engine.library import Library
 from stridewire_engine.matching.explanation import explain
-from stridewire_engine.runtime import Runtime, Session, choice, intent
+from stridewire_engine.runtime import Runtime, Session, choice
 from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.runtime.crowd import Crowd
 
@@ -112,7 +112,8 @@ def _moment(session: Session, frame: Frame, at: int, before: Characters, dt: Flo
     crowd, library = session.crowd, session.crowd.library
     row = before.take(np.array([at]))
     begins = bool(row.clip[0] < 0)
-    due, seen = _consider(crowd, row, dt[at : at + 1])
+    reasons, seen = crowd.consider(row.take(np.zeros(1, np.intp)), dt[at : at + 1])
+    due = int(reasons[0])
     candidates, excluded = explain(
         crowd.matcher, seen.queries[0], seen.weights[0], choice.exclusions(seen.excluded[0]),
         CANDIDATES, crowd.sets[int(row.filter[0])],
@@ -138,20 +139,6 @@ def _moment(session: Session, frame: Frame, at: int, before: Characters, dt: Flo
         speed=float(np.hypot(frame.root_delta[at, 0], frame.root_delta[at, 2])) / passed,
         asked_speed=float(np.linalg.norm(row.desired_velocity[0])),
         transition=transition,
-    )
-
-
-def _consider(crowd: Crowd, row: Characters, dt: Floats) -> tuple[int, choice.Considered]:
-    """Make the choice of a tick on a copy of a row; also return why it was due, 0 for not."""
-    state = row.take(np.zeros(1, np.intp))
-    state.time += dt
-    goal = intent.set_goals(state, crowd.max_speed)
-    times = np.array(crowd.matcher.schema.trajectory_times)
-    prediction = intent.predict(state, goal, times, crowd.settings)
-    due = choice.due(state, crowd.matcher, dt, crowd.settings)
-    looked: Indices = np.where(due > 0, due, TransitionReason.BETTER_MATCH)
-    return int(due[0]), choice.consider(
-        state, crowd.matcher, crowd.sets, prediction, looked, crowd.settings
     )
 
 

@@ -10,6 +10,7 @@ from stridewire_engine.library import Library
 from stridewire_engine.matching.candidates import CandidateSet
 from stridewire_engine.matching.search import Matcher
 from stridewire_engine.runtime.characters import Characters, contiguous
+from stridewire_engine.runtime.choice import Considered
 from stridewire_engine.runtime.settings import TickSettings
 from stridewire_engine.runtime.tick import Block, Tick
 
@@ -102,6 +103,10 @@ class Crowd:
         if not isinstance(which, slice):
             self.state.put(which, part)
         return block
+
+    def consider(self, rows: Characters, dt: Floats) -> tuple[Indices, Considered]:
+        """Say what rows would search for and find; see `Tick.consider`."""
+        return self._tick.consider(rows, dt, self.sets)
 
     def _room(self, amount: int) -> int:
         """Return the first row of a free run, at the end if there is none before."""

@@ -27,9 +27,9 @@ class Multiples(NamedTuple):
 
 NEUTRAL = 0.5
 """Responsiveness under which nothing is multiplied."""
-QUALITY = Multiples(1.4, 1.4, 2.0, 0.6)
+QUALITY = Multiples(1.75, 1.3, 1.5, 0.5)
 """At responsiveness 0."""
-RESPONSE = Multiples(0.55, 0.55, 0.4, 2.0)
+RESPONSE = Multiples(0.8, 0.7, 0.4, 2.5)
 """At responsiveness 1."""
 
 

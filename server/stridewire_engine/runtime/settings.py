@@ -7,9 +7,9 @@ from dataclasses import dataclass
 class TickSettings:
     """Half-lives in seconds unless said otherwise; a spring's is not a true one, see `springs`."""
 
-    velocity_halflife: float = 0.27
+    velocity_halflife: float = 0.11
     """Spring of the simulated root's velocity."""
-    facing_halflife: float = 0.27
+    facing_halflife: float = 0.21
     """Spring of the simulated root's heading."""
     search_interval: float = 0.15
     """Seconds between searches of a character."""

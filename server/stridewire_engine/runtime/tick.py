@@ -154,6 +154,28 @@ class Tick:
         timings.note("feet")
         return self._block(state, delta, hips, rotations, contacts, after, jumps, timings)
 
+    def consider(
+        self, state: Characters, dt: Floats, sets: Sets
+    ) -> tuple[Indices, choice.Considered]:
+        """Say what a step would search for and find, for every row, whether it would search or not.
+
+        Args:
+            state: N rows, which are used up: give a copy.
+            dt: `(N,)` seconds.
+            sets: As for `step`.
+
+        Returns:
+            `(N,)` the reasons to search, 0 for none, and what all rows would find.
+        """
+        settings, library = self._settings, self._matcher.library
+        state.time += dt
+        goal = intent.set_goals(state, self._max_speed)
+        prediction = intent.predict(state, goal, self._times, settings)
+        stands = standing.stands(state, library, self._spans, settings)
+        reason = choice.due(state, self._matcher, stands, dt, settings)
+        looked = np.where(reason > 0, reason, TransitionReason.BETTER_MATCH)
+        return reason, choice.consider(state, self._matcher, sets, prediction, looked, settings)
+
     def _jump(self, state: Characters, jumps: Jumps) -> None:
         """Hand the jumping characters over to their stitchers and set them to their new moments."""
         library = self._matcher.library
