@@ -13,8 +13,8 @@ from stridewire import __version__
 from stridewire._messages import Match
 from stridewire.formats.session_file import Advance, SessionFile
 from stridewire_engine.commands.replay import original
+from stridewire_engine.evaluation.timeline import draw_timeline
 from stridewire_engine.replaying.inspection import Moment, inspect
-from stridewire_engine.replaying.timeline import draw_timeline
 
 
 @click.command()
