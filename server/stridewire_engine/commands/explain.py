@@ -12,8 +12,8 @@ import click
 from stridewire import __version__
 from stridewire._messages import Match
 from stridewire.formats.session_file import Advance, SessionFile
+from stridewire_engine.commands.explain_timeline import draw_timeline
 from stridewire_engine.commands.replay import original
-from stridewire_engine.evaluation.timeline import draw_timeline
 from stridewire_engine.replaying.inspection import Moment, inspect
 
 
