@@ -9,6 +9,8 @@ import click
 from stridewire_engine.evaluation.split_clips import import_clips, split_files
 from stridewire_engine.networks.blend.pairs import Frames
 from stridewire_engine.networks.onnx_model import SUMS
+from stridewire_models.commands.export_rmr import rmr
+from stridewire_models.commands.sums import enter
 
 
 @click.group()
@@ -49,7 +51,7 @@ def blend(run: Path, data: Path, out: Path | None, as_json: bool) -> None:
     path = out or run / "blend.onnx"
     path.write_bytes(content)
     digest = hashlib.sha256(content).hexdigest()
-    _list(path.parent / SUMS, path.name, digest)
+    enter(path.parent / SUMS, path.name, digest)
     facts = {
         "file": str(path),
         "variant": told["variant"],
@@ -64,8 +66,4 @@ def blend(run: Path, data: Path, out: Path | None, as_json: bool) -> None:
     )
 
 
-def _list(sums: Path, name: str, digest: str) -> None:
-    """Enter a file's hash into a list that `sha256sum -c` reads."""
-    lines = sums.read_text().splitlines() if sums.is_file() else []
-    others = [line for line in lines if line.split()[1] != name]
-    sums.write_text("\n".join(sorted([*others, f"{digest}  {name}"])) + "\n")
+export.add_command(rmr)

@@ -8,6 +8,7 @@ import click
 
 from stridewire.motion.mirror import mirror_clip
 from stridewire_models.commands.train_blend import blend
+from stridewire_models.commands.train_rmr import rmr
 from stridewire_models.gait.fitting import fit
 from stridewire_models.gait.measuring import Standing, Steps, measure_standing, measure_steps
 from stridewire_models.gait.takes import Take, load_takes, take_files
@@ -19,6 +20,7 @@ def train() -> None:
 
 
 train.add_command(blend)
+train.add_command(rmr)
 
 
 @train.command()

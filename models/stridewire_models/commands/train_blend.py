@@ -7,9 +7,8 @@ from pathlib import Path
 
 import click
 
-from stridewire.motion.clip import Clip
-from stridewire_engine.evaluation.split_clips import import_clips, split_files
 from stridewire_engine.networks.blend.pairs import Frames
+from stridewire_models.commands.split_import import clips_of
 
 VARIANTS = ("correction", "paper")
 _LOOK_EVERY = 500
@@ -55,8 +54,8 @@ def blend(data: Path, out: Path, variant: str, seed: int, steps: int | None, as_
         phases = tuple(replace(phase, steps=min(steps, phase.steps)) for phase in recipe.phases)
         recipe = replace(recipe, phases=phases)
     began = time.monotonic()
-    train = Frames.of(_clips(data, "train", as_json), mirror=True)
-    validation = Frames.of(_clips(data, "validation", as_json))
+    train = Frames.of(clips_of(data, "train", as_json), mirror=True)
+    validation = Frames.of(clips_of(data, "validation", as_json))
     run = Run(out, recipe, train, validation, seed)
     # the setting is the thread's, so that it must not outlive the training
     torch.set_flush_denormal(True)
@@ -75,14 +74,6 @@ def blend(data: Path, out: Path, variant: str, seed: int, steps: int | None, as_
         "minutes": round((time.monotonic() - began) / 60.0, 1),
     }
     click.echo(json.dumps(facts) if as_json else _sentence(facts))
-
-
-def _clips(data: Path, split: str, quiet: bool) -> list[Clip]:
-    files = split_files(data, "cmu", split)
-    with click.progressbar(
-        import_clips(files), length=len(files), label=f"importing {split}", hidden=quiet
-    ) as clips:
-        return [clip for clip in clips if clip is not None]
 
 
 def _sentence(facts: dict[str, object]) -> str:

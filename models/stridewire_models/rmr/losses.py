@@ -22,6 +22,7 @@ from stridewire_models.rmr.footing import follow
 from stridewire_models.rmr.networks import Steps
 
 _POSITION, _VELOCITY, _ACCELERATION, _JERK = 1.0, 10.0, 20.0, 10.0
+_ANKLE_VELOCITY, _ANKLE_ACCELERATION, _ANKLE_JERK = 5.0, 15.0, 10.0
 _SLIDING, _TURN, _REACH, _CONTACT = 40.0, 1.0, 10.0, 0.1
 _LEG_SHARE = 0.985
 _LEG = float(np.linalg.norm(REFERENCE.offsets[2:4], axis=-1).sum())
@@ -60,12 +61,7 @@ def guide(network: Steps, batch: Batch) -> Guided:
     )
     toes = torch.stack([ground[..., 0], target[..., 1], ground[..., 1]], dim=-1)
     feet = multiply(from_scaled_axis(turn), batch.feet)
-    return Guided(
-        toes,
-        feet,
-        toes - rotate(feet, feet.new_tensor(_TOE_OFFSET).expand(*feet.shape[:-1], 3)),
-        planted,
-    )
+    return Guided(toes, feet, toes - _foot(feet), planted)
 
 
 def loss_of(network: Steps, batch: Batch) -> dict[str, Tensor]:
@@ -77,6 +73,8 @@ def loss_of(network: Steps, batch: Batch) -> dict[str, Tensor]:
     speed = torch.diff(away, dim=1)
     second, third = torch.diff(speed, dim=1), torch.diff(speed, n=2, dim=1)
     down = batch.true_labels[:, 1:] * batch.true_labels[:, :-1] * after[:, 1:, None]
+    ankle = guided.ankles - (batch.true_toes - _foot(batch.true_feet))
+    turning = torch.diff(ankle, dim=1)
     slid = torch.diff(guided.toes[..., [0, 2]], dim=1)
     stretched = torch.linalg.vector_norm(batch.hips - guided.ankles, dim=-1)
     same = torch.sum(guided.feet * batch.true_feet, dim=-1) ** 2
@@ -88,11 +86,20 @@ def loss_of(network: Steps, batch: Batch) -> dict[str, Tensor]:
         "velocity": _VELOCITY * _mean(speed, near[:, 1:]),
         "acceleration": _ACCELERATION * _mean(second, near[:, 2:]),
         "jerk": _JERK * _mean(third, near[:, 3:]),
+        # knees jerk where ankles do
+        "ankle": _ANKLE_VELOCITY * _mean(turning, near[:, 1:])
+        + _ANKLE_ACCELERATION * _mean(torch.diff(turning, dim=1), near[:, 2:])
+        + _ANKLE_JERK * _mean(torch.diff(turning, n=2, dim=1), near[:, 3:]),
         "sliding": _SLIDING * _mean(slid, down[..., None]),
         "turn": _TURN * _mean(1.0 - same, after[..., None]),
         "reach": _REACH * _mean(torch.relu(stretched - _LEG_SHARE * _LEG), after[..., None]),
         "contact": _CONTACT * _mean(heard, after[..., None]),
     }
+
+
+def _foot(turns: Tensor) -> Tensor:
+    """Return the way from ankle to toe of feet's rotations `(..., 4)`."""
+    return rotate(turns, turns.new_tensor(_TOE_OFFSET).expand(*turns.shape[:-1], 3))
 
 
 def _mean(values: Tensor, weight: Tensor) -> Tensor:

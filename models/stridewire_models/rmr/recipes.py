@@ -19,7 +19,11 @@ class Recipe:
     """Pairs that are made at once."""
     fresh_every: int
     """Steps after which other pairs are made."""
+    live: float
+    """Share of live plans."""
+    furthest: int
+    """Rank of the furthest segment that is set into pairs; near ones alone are too easy."""
 
 
-RECIPES = {"steps": Recipe("steps", 4_000, 96, 1e-3, 1e-4, 0.998, 4_000, 400)}
+RECIPES = {"steps": Recipe("steps", 4_000, 96, 1e-3, 1e-4, 0.998, 4_000, 400, 0.4, 40)}
 """Within an hour of one thread."""

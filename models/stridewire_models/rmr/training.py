@@ -47,8 +47,8 @@ class Run:
         self.progress = Progress()
         self.network = Steps()
         self._seed = seed
-        self._supply = Supply(train, recipe.pool)
-        self._judged = judged(validation)
+        self._supply = Supply(train, recipe.pool, recipe.live, recipe.furthest)
+        self._judged = judged(validation, recipe.live > 0.0)
         self._pool = self._fresh(0)
         self.network.fit(self._pool.x.numpy())
         self.average = torch.optim.swa_utils.AveragedModel(

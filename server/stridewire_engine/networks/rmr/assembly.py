@@ -66,18 +66,22 @@ class Assembled:
     """As the take is."""
 
 
-def assemble(takes: Takes, pairs: Pairs) -> Assembled:
-    """Put clips under the take's root path, springs over the seams."""
-    root, yaw = takes.root_path(pairs.truth)
+def assemble(takes: Takes, pairs: Pairs, path: tuple[Vectors, Floats] | None = None) -> Assembled:
+    """Put clips under the take's root path, springs over the seams.
+
+    Args:
+        takes: That the pairs' rows are of.
+        pairs: N pairs of T frames.
+        path: Another path than the take's: roots `(N, T, 3)` and yaws `(N, T)`.
+    """
+    own, own_yaw = takes.root_path(pairs.truth)
+    root, yaw = (own, own_yaw) if path is None else path
     hips = takes.hips[pairs.rows].astype(np.float64)
     turns = takes.rotations[pairs.rows][:, :, : len(LOWER)].astype(np.float64)
     shown_hips, shown_turns = spring(takes, pairs.rows, pairs.starts, hips, turns)
     clip = Legs.of(root, yaw, hips, turns)
     sprung = Legs.of(root, yaw, shown_hips, shown_turns)
-    before = np.concatenate([clip.toes[:, :1], clip.toes[:, :-1]], axis=1)
-    n, t = np.nonzero(pairs.starts)
-    local = takes.joints[pairs.rows[n, t] - 1][:, TOES].astype(np.float64)
-    before[n, t] = turned(local, yaw[n, t - 1]) + root[n, t - 1, None]
+    before = placed_before(takes, clip.toes, pairs.rows, pairs.starts, root, yaw)
     plans = Plans(
         root,
         yaw,
@@ -90,12 +94,32 @@ def assemble(takes: Takes, pairs: Pairs) -> Assembled:
         np.ones(len(pairs), bool),
     )
     truth = Legs.of(
-        root,
-        yaw,
+        own,
+        own_yaw,
         takes.hips[pairs.truth].astype(np.float64),
         takes.rotations[pairs.truth][:, :, : len(LOWER)].astype(np.float64),
     )
     return Assembled(plans, sprung, clip, before, truth)
+
+
+def placed_before(
+    takes: Takes, toes: Vectors, rows: Indices, starts: Flags, root: Vectors, yaw: Floats
+) -> Vectors:
+    """Return where each frame's clip had its toes a frame earlier `(N, T, 2, 3)`.
+
+    Args:
+        takes: That the rows are of.
+        toes: `(N, T, 2, 3)` of the rows in the world.
+        rows: `(N, T)`.
+        starts: `(N, T)` whether a clip begins.
+        root: `(N, T, 3)`.
+        yaw: `(N, T)`.
+    """
+    before = np.concatenate([toes[:, :1], toes[:, :-1]], axis=1)
+    n, t = np.nonzero(starts)
+    local = takes.joints[rows[n, t] - 1][:, TOES].astype(np.float64)
+    before[n, t] = turned(local, yaw[n, t - 1]) + root[n, t - 1, None]
+    return before
 
 
 def spring(
