@@ -7,6 +7,9 @@ import numpy as np
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Quaternions, Vectors
 
+_POLE = 0.03
+"""Where a middle is so little aside, in metres, that its side is chance, `forward` has a say."""
+
 
 class Limb(NamedTuple):
     """Result of `two_bone_ik`, arrays over the leading shape `(...)`."""
@@ -63,7 +66,7 @@ def two_bone_ik(
     bend = bend - direction * _dot(bend, direction)
     pole = quaternion.rotate(swing, forward)
     pole = pole - direction * _dot(pole, direction)
-    bend = bend + pole * np.maximum(0.0, 0.01 - _length(bend))
+    bend = bend + pole * np.maximum(0.0, _POLE - _length(bend))
     # a limb bent backwards by just so much cancels the pole
     bend = np.where(_length(bend) < 1e-6, pole, bend)
     bend = bend / np.maximum(_length(bend), 1e-9)

@@ -120,7 +120,7 @@ def stitched(windows: Windows, stitcher: Stitcher, guidance: Guidance | None = N
         if len(seams):
             _enter(windows, state, seams[~begun[seams]], frame)
             begun[seams] = True
-            _begin(windows, stitcher, state, seams, frame)
+            _begin(windows, stitcher, state, seams, frame, guidance)
         rows = np.flatnonzero(begun)
         if not len(rows):
             continue
@@ -142,13 +142,21 @@ def _enter(windows: Windows, state: StitchState, rows: Indices, frame: int) -> N
 
 
 def _begin(
-    windows: Windows, stitcher: Stitcher, state: StitchState, rows: Indices, frame: int
+    windows: Windows,
+    stitcher: Stitcher,
+    state: StitchState,
+    rows: Indices,
+    frame: int,
+    guidance: Guidance | None,
 ) -> None:
     part = state.take(rows)
     old = windows.pairs.rows[rows, frame - 1]
     new = windows.pairs.rows[rows, frame]
     source = _motion(windows, rows, frame, old, old + 1)
     target = _motion(windows, rows, frame, new - 1, new)
+    if guidance is not None:
+        led = turn_to_root(guidance.toe_offset[rows, frame - 1], windows.yaw[rows, frame - 1])
+        target = target._replace(toes=target.toes + led)
     stitcher.begin(part, source, target, windows.roots(rows, frame - 1))
     part.stitch_time[...] = 0.0
     state.put(rows, part)

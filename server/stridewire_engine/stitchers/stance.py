@@ -80,13 +80,17 @@ class Stance:
         target = self._target(state, sample, led, dt)
         toes = self._step(state, sample, target, dt)
         body = leg_pose(sample.legs, hips, rotations)
-        if sample.guide is not None:
-            body = turn_feet(sample.legs, body, sample.guide.foot_turn)
-        drop = _drop(state, sample, toes, dt)
-        body = body.lowered(drop)
         shown = sample.roots.to_root(toes.position).astype(np.float32)
-        own = np.linalg.norm(body.hip - body.ankle, axis=-1)
-        body, ankles = raise_heels(body, shown, np.maximum(_REACH * sample.legs.length, own))
+        if sample.guide is None:
+            drop = _drop(state, sample.ahead, sample, toes, dt)
+            body = body.lowered(drop)
+            own = np.linalg.norm(body.hip - body.ankle, axis=-1)
+            body, ankles = raise_heels(body, shown, np.maximum(_REACH * sample.legs.length, own))
+        else:
+            # a guide leads feet where legs reach; drops and raised heels would but jerk knees
+            drop = _drop(state, None, sample, toes, dt)
+            body = turn_feet(sample.legs, body, sample.guide.foot_turn).lowered(drop)
+            ankles = shown + (body.ankle - body.toe)
         bent, ankles = bend(sample.legs, body, rotations, ankles)
         self._remember(state, sample, target, toes, ankles + (body.toe - body.ankle))
         state.legs_shown[...] = bent[:, sample.legs.joints]
@@ -207,11 +211,13 @@ def _gentle_halflife(offset: Vectors, strongest: float) -> Floats:
     return np.asarray(2.0 * _LN2 * np.sqrt(size / strongest))
 
 
-def _drop(state: StitchState, sample: Sample, toes: Toes, dt: Floats) -> Floats:
+def _drop(
+    state: StitchState, ahead: LegsAhead | None, sample: Sample, toes: Toes, dt: Floats
+) -> Floats:
     """Return by how much the hips `(N,)` are lowered so that legs reach, now and soon."""
     wanted = np.zeros(len(dt))
-    if sample.ahead is not None:
-        need = _need(state, sample, sample.ahead, toes)
+    if ahead is not None:
+        need = _need(state, sample, ahead, toes)
         wanted = np.minimum(need.max(axis=(1, 2)), _DEEPEST_DROP)
     drop, speed = spring_damper_exact(
         state.hip_drop, state.hip_drop_speed, wanted, _DROP_HALFLIFE, dt

@@ -80,7 +80,8 @@ class LegsAhead(NamedTuple):
 class Guide(NamedTuple):
     """How feet are to go instead of as the clips' do, for N characters now; see `networks.rmr`.
 
-    Who gives one also writes its contacts and offsets into the sample and the legs ahead.
+    Who gives one also writes its contacts and offsets into the sample and the legs ahead, and at a
+    jump adds the offset of the frame before to the toes of the clip that comes.
     """
 
     planted: Floats
