@@ -53,9 +53,9 @@ def recipe(steps: int) -> Recipe:
     return replace(
         RECIPES["steps"],
         steps=steps,
-        batch=16,
+        batch=12,
         learning_rate=5e-3,
-        pool=48,
+        pool=24,
         averaging=0.0,
         fresh_every=15,
     )
@@ -111,6 +111,8 @@ def test_onnx_agrees_with_torch(takes: Takes, plans: int, frames: int) -> None:
         np.testing.assert_allclose(ours, theirs.numpy(), atol=PARITY)
 
 
+@pytest.mark.slow
+@pytest.mark.timeout(600)
 def test_a_run_learns_and_goes_on(takes: Takes, tmp_path: Path) -> None:
     """The loss falls; a run that stopped half way ends where one that did not stop ends."""
     whole = Run(tmp_path / "whole", recipe(40), takes, takes, 0)
