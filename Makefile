@@ -62,7 +62,7 @@ pictures: $(VENV)/.server ## draw the animation of the README anew
 page-pictures: $(VENV)/.dev ## take the pictures of the page anew; needs Chromium
 	$(BIN)/python tests/docs/page_pictures.py
 
-page: ## bundle the page of `stridewire play` anew after a change in its sources or in proto/
+page: ## bundle the page of `stridewire play` anew after a change in its sources
 	npm ci --silent --ignore-scripts --prefix $(PAGE)
 	npm run --silent build --prefix $(PAGE)
 

@@ -4,10 +4,11 @@ Needs Chromium and Playwright. On a machine without a graphics card it takes min
 seen is drawn with shadows on the processor.
 """
 
+import argparse
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -34,13 +35,12 @@ def playing(*files: Path) -> Iterator[str]:
             server.terminate()
 
 
-def shoot(visiting: Visit, name: str) -> None:
+def shoot(visiting: Visit, path: Path) -> None:
     """Write a picture of what is shown, drawn as well as can be."""
     visiting.ask("stage.choose(0);")
     visiting.page.wait_for_timeout(4000.0)
-    path = IMAGES / f"{name}.png"
     visiting.page.screenshot(path=path, timeout=120_000.0)
-    print(path.relative_to(IMAGES.parents[1]))
+    print(path)
 
 
 def drive(visiting: Visit, seconds: float, *keys: str) -> None:
@@ -53,7 +53,7 @@ def drive(visiting: Visit, seconds: float, *keys: str) -> None:
     visiting.wait(f"play.history.end > {end}", 300.0)
 
 
-def driven(url: str) -> None:
+def driven(url: str, out: Path) -> None:
     """One character that runs a curve, looked back at in the middle of a transition."""
     with visit(url, WIDE) as visiting:
         visiting.wait("play.drawn", 300.0)
@@ -67,10 +67,10 @@ def driven(url: str) -> None:
             " stage.look.yaw = 2 * Math.atan2(y, w) + 0.8;"
         )
         visiting.page.wait_for_timeout(1500.0)
-        shoot(visiting, "play")
+        shoot(visiting, out / "play.png")
 
 
-def crowded(url: str) -> None:
+def crowded(url: str, out: Path) -> None:
     """A crowd of 64."""
     with visit(url, WIDE) as visiting:
         visiting.wait("play.drawn", 300.0)
@@ -78,24 +78,25 @@ def crowded(url: str) -> None:
         visiting.page.locator("h1").click()
         visiting.ask("Object.assign(stage.look, { distance: 10, pitch: 0.5 });")
         drive(visiting, 6.0, "KeyW")
-        shoot(visiting, "play-crowd")
+        shoot(visiting, out / "play-crowd.png")
 
 
-def on_a_phone(url: str) -> None:
+def on_a_phone(url: str, out: Path) -> None:
     """The same at phone width."""
     phone = {"has_touch": True, "is_mobile": True, "device_scale_factor": 2}
     with visit(url, PHONE, **phone) as visiting:
         visiting.wait("play.drawn", 300.0)
         drive(visiting, 5.0, "KeyW")
-        shoot(visiting, "play-phone")
+        shoot(visiting, out / "play-phone.png")
 
 
-def side_by_side(address: str, folder: Path) -> None:
+def side_by_side(address: str, folder: Path, out: Path) -> None:
     """Two files at the same moment.
 
     Args:
         address: Of a server that makes them.
         folder: Where they go.
+        out: Where the picture goes.
     """
     files = []
     for script in ("walk-turn-stop", "u-turns"):
@@ -114,23 +115,32 @@ def side_by_side(address: str, folder: Path) -> None:
     with playing(*files) as url, visit(url, WIDE) as visiting:
         visiting.wait("play.time > 0 && play.subjects.every(({ bodies }) => bodies)", 300.0)
         visiting.page.get_by_label("time").fill("2.6")
-        shoot(visiting, "play-files")
+        shoot(visiting, out / "play-files.png")
 
 
 def main() -> int:
     """Take all pictures, or those that are named."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--out", type=Path, default=IMAGES)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    given = parser.parse_args()
     if reason := absent():
-        print(reason)
+        print(reason, file=sys.stderr)
         return 1
-    wanted = sys.argv[1:]
-    with playing() as url:
-        for take in (driven, crowded, on_a_phone):
-            if not wanted or take.__name__ in wanted:
-                take(url)
-    if not wanted or side_by_side.__name__ in wanted:
+    live = [take for take in (driven, crowded, on_a_phone) if wanted(take, given.names)]
+    if live:
+        with playing() as url:
+            for take in live:
+                take(url, given.out)
+    if wanted(side_by_side, given.names):
         with serve() as address, TemporaryDirectory() as folder:
-            side_by_side(address, Path(folder))
+            side_by_side(address, Path(folder), given.out)
     return 0
+
+
+def wanted(take: Callable[..., None], names: list[str]) -> bool:
+    """Tell whether a picture was named, or none."""
+    return not names or take.__name__ in names
 
 
 if __name__ == "__main__":
