@@ -187,6 +187,7 @@ def test_switches_change_the_running_session(played: Played) -> None:
     page.get_by_label("filter").press("Enter")
     page.locator("#message").wait_for(timeout=1e3 * DEADLINE_S)
     assert "fly" in page.locator("#message").inner_text()
+    assert played.visit.ask("return play.panel.settings.filter;") == "walk"
 
 
 @pytest.mark.parametrize("played", [{"size": (900, 700)}], indirect=True)

@@ -70,6 +70,7 @@ export class Live {
     if (kind === "opened") this.#opened(message, bytes);
     else if (kind === "frame") this.#frame(message, bytes);
     else if (kind === "error") {
+      for (const { field } of message.violations) this.panel.takeBack(field);
       this.#say(message.violations.map(({ field, description }) => `${field}: ${description}`).join("\n"));
     } else this.#say(message.message);
   }

@@ -16,6 +16,7 @@ export class Panel {
       weights: {},
       responsiveness: undefined,
     };
+    this.before = {};
     this.view = { ghost: false, ways: true, contacts: true, crowd: false };
     this.#build();
   }
@@ -30,13 +31,16 @@ export class Panel {
     return spec;
   }
 
+  // Takes back the setting that a field of an Error names: what was refused does not hold.
+  takeBack(field) {
+    const [, name] = /\.spec\.(\w+)/.exec(field) ?? [];
+    const setting = name?.replace(/_(\w)/, (_, letter) => letter.toUpperCase());
+    if (setting && setting in this.before) this.settings[setting] = this.before[setting];
+  }
+
   #build() {
     const { libraries, stitchers } = this.about;
-    const set = (name) => (value) => {
-      this.settings[name] = value;
-      if (name === "library") this.#buildLibrary();
-      this.changed([name]);
-    };
+    const set = (name) => (value) => this.#set(name, value);
     const look = (name) => (value) => {
       this.view[name] = value;
       this.changed([name]);
@@ -68,8 +72,7 @@ export class Panel {
     const known = element("datalist", { id: "tags" }, ...tags.map((tag) => element("option", { value: tag })));
     const weights = Object.entries(channels).map(([name, weight]) =>
       slide(name, 0, WEIGHT_STEPS.length - 1, 1, 3, (value) => {
-        this.settings.weights = { ...this.settings.weights, [name]: WEIGHT_STEPS[value] * weight };
-        this.changed(["weights"]);
+        this.#set("weights", { ...this.settings.weights, [name]: WEIGHT_STEPS[value] * weight });
       }, (value) => `× ${WEIGHT_STEPS[value]}`),
     );
     byId("library").replaceChildren(
@@ -79,7 +82,9 @@ export class Panel {
   }
 
   #set(name, value) {
+    this.before = { ...this.settings };
     this.settings[name] = value;
+    if (name === "library") this.#buildLibrary();
     this.changed([name]);
   }
 }
