@@ -58,7 +58,7 @@ def driven(url: str, out: Path) -> None:
     with visit(url, WIDE) as visiting:
         visiting.wait("play.drawn", 300.0)
         visiting.page.get_by_label("raw ghost").check(timeout=120_000.0)
-        visiting.page.locator("h1").click()
+        visiting.page.evaluate("document.activeElement.blur()")
         drive(visiting, 9.0, "KeyW", "ShiftLeft")
         visiting.ask("play.cursor = play.history.transitions.at(-2).time + 0.1;")
         visiting.ask("Object.assign(stage.look, { distance: 4.6, pitch: 0.3 });")
@@ -75,7 +75,7 @@ def crowded(url: str, out: Path) -> None:
     with visit(url, WIDE) as visiting:
         visiting.wait("play.drawn", 300.0)
         visiting.page.get_by_label("crowd of 64").check(timeout=120_000.0)
-        visiting.page.locator("h1").click()
+        visiting.page.evaluate("document.activeElement.blur()")
         visiting.ask("Object.assign(stage.look, { distance: 10, pitch: 0.5 });")
         drive(visiting, 6.0, "KeyW")
         shoot(visiting, out / "play-crowd.png")

@@ -67,7 +67,10 @@ export class Panel {
       placeholder: "all, or: walk | run",
       ariaLabel: "filter",
       list: "tags",
-      onchange: (event) => this.#set("filter", event.target.value),
+      onchange: ({ target }) => {
+        target.blur(); // keys drive the character again
+        this.#set("filter", target.value);
+      },
     });
     const known = element("datalist", { id: "tags" }, ...tags.map((tag) => element("option", { value: tag })));
     const weights = Object.entries(channels).map(([name, weight]) =>
@@ -93,7 +96,11 @@ function choice(label, values, chosen, set, empty = "") {
   const options = values.map((value) =>
     element("option", { value, selected: value === chosen }, value || empty),
   );
-  const select = element("select", { onchange: (event) => set(event.target.value) }, ...options);
+  const choose = ({ target }) => {
+    target.blur();
+    set(target.value);
+  };
+  const select = element("select", { onchange: choose }, ...options);
   return element("label", {}, label, select);
 }
 
