@@ -24,10 +24,10 @@ PHONE = (390, 780)
 
 
 @contextmanager
-def playing(*files: Path) -> Iterator[str]:
+def playing(*arguments: str) -> Iterator[str]:
     """Run `stridewire play`; gives the address of its page."""
     command = [sys.executable, "-m", "stridewire", "play", "--no-browser", "--port", "0", "--json"]
-    with subprocess.Popen([*command, *files], stdout=subprocess.PIPE, text=True) as server:
+    with subprocess.Popen([*command, *arguments], stdout=subprocess.PIPE, text=True) as server:
         assert server.stdout is not None
         try:
             yield json.loads(server.stdout.readline())["url"]
@@ -112,7 +112,7 @@ def side_by_side(address: str, folder: Path, out: Path) -> None:
             "6",
         ]
         subprocess.run([*command, "--address", address, "--out", files[-1]], check=True)
-    with playing(*files) as url, visit(url, WIDE) as visiting:
+    with playing(*map(str, files)) as url, visit(url, WIDE) as visiting:
         visiting.wait("play.time > 0 && play.subjects.every(({ bodies }) => bodies)", 300.0)
         visiting.page.get_by_label("time").fill("2.6")
         shoot(visiting, out / "play-files.png")
@@ -122,6 +122,7 @@ def main() -> int:
     """Take all pictures, or those that are named."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--out", type=Path, default=IMAGES)
+    parser.add_argument("--library", help="built before; else the embedded one")
     parser.add_argument("names", nargs="*", metavar="NAME")
     given = parser.parse_args()
     if reason := absent():
@@ -129,11 +130,11 @@ def main() -> int:
         return 1
     live = [take for take in (driven, crowded, on_a_phone) if wanted(take, given.names)]
     if live:
-        with playing() as url:
+        with playing(*(["--library", given.library] if given.library else [])) as url:
             for take in live:
                 take(url, given.out)
     if wanted(side_by_side, given.names):
-        with serve() as address, TemporaryDirectory() as folder:
+        with serve(*filter(None, [given.library])) as address, TemporaryDirectory() as folder:
             side_by_side(address, Path(folder), given.out)
     return 0
 
