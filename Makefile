@@ -9,7 +9,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 STRIDEWIRE_DATA ?= $(abspath ../shared/data)
 export STRIDEWIRE_DATA PROTO_VENV
 
-.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge page page-pictures site pictures reference image clean help
+.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge show-refiner page page-pictures site pictures reference image clean help
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -65,6 +65,9 @@ page-pictures: $(VENV)/.dev ## take the pictures of the page anew; needs Chromiu
 page: ## bundle the page of `stridewire play` anew after a change in its sources
 	npm ci --silent --ignore-scripts --prefix $(PAGE)
 	npm run --silent build --prefix $(PAGE)
+
+show-refiner: $(VENV)/.dev ## check what stitching claims, as a service and by its network
+	$(BIN)/python tests/show/refiner.py $(SHOW)
 
 reference: $(VENV)/.dev ## write docs/reference.md anew after a change in proto/ or a command
 	$(BIN)/python tests/docs/reference.py > docs/reference.md
