@@ -71,7 +71,6 @@ def refused() -> Iterator[Point]:
     cases: list[tuple[str, Sequence[ClipSpan | Clip | BvhText], dict[str, object], str]] = [
         (f"a clip of {n} frames", [good, walk.cut(0, n)], {}, "clips[1]") for n in range(1, 10)
     ]
-    short = {"window_s": 0.3, "shift_s": 0.5}
     cases += [
         ("10,000 clips", [good] * 10_000, {}, "clips"),
         ("one clip", [good], {}, "clips"),
