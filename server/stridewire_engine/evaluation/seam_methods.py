@@ -7,7 +7,7 @@ import numpy as np
 from stridewire.motion import quaternion
 from stridewire.motion.skeleton import CONTACT_JOINTS, REFERENCE
 from stridewire_engine.evaluation.seams import Poses, Windows, stitched
-from stridewire_engine.networks.rmr import Refiner
+from stridewire_engine.networks.rmr import Guidance, Refiner
 from stridewire_engine.networks.rmr.assembly import assemble
 from stridewire_engine.networks.rmr.plans import FRAME_RATE
 from stridewire_engine.runtime import feet
@@ -33,6 +33,7 @@ def plain_methods() -> Mapping[str, Method]:
         "quintic": by_stitcher(_named("quintic")),
         "dead-blend": by_stitcher(_named("dead-blend")),
         "stance": by_stitcher(_named("stance")),
+        "refine-silent": silent,
     }
 
 
@@ -49,6 +50,18 @@ def refined(refiner: Refiner) -> Method:
         return stitched(windows, Stance(), refiner.refine(plans))
 
     return method
+
+
+def silent(windows: Windows) -> Poses:
+    """Return guided stance whose network says nothing: what is left without its answer."""
+    feet_shape = (*windows.contacts.shape, 3)
+    said = Guidance(
+        windows.contacts.astype(np.float64),
+        np.zeros(feet_shape),
+        np.zeros(feet_shape),
+        np.zeros(len(windows)),
+    )
+    return stitched(windows, Stance(), said)
 
 
 def truth(windows: Windows) -> Poses:
