@@ -2,6 +2,7 @@
 
 import sys
 
+import refiner_tables
 import stitch_service
 from points import show
 
@@ -14,6 +15,11 @@ if __name__ == "__main__":
                 stitch_service.untouched,
                 stitch_service.refused,
                 stitch_service.models,
+                refiner_tables.cmu,
+                refiner_tables.cmu_smoothed,
+                refiner_tables.lafan1,
+                refiner_tables.lafan1_smoothed,
+                refiner_tables.cost,
             ],
         )
     )
