@@ -12,7 +12,7 @@ from stridewire_engine.commands.library_info import open_library
 from stridewire_engine.evaluation.bench import Bench
 from stridewire_engine.evaluation.cell import REPORT_SEEDS
 from stridewire_engine.evaluation.criticism import SCRIPTS, criticise
-from stridewire_engine.runtime.admission import STITCHER_NAMES
+from stridewire_engine.stitchers import STITCHER_NAMES
 
 _FOLDER = click.Path(file_okay=False, path_type=Path)
 _KINDS = {"streamed": "transitions", "quiet": "streamed, none", "captured": "captured halves"}
