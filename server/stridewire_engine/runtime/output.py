@@ -56,7 +56,8 @@ class Output:
 
     def scale(self, height_m: float) -> float:
         """Return the size of a character in the reference's; of the skeleton's own for height 0."""
-        return self._scale * (height_m / self._height if height_m else 1.0)
+        exact = float(np.float32(height_m))  # what comes over the wire: so in process, too
+        return self._scale * (exact / self._height if exact else 1.0)
 
     def show(self, block: Block, rows: slice, ids: Indices, scales: Floats, dt: float) -> Shown:
         """Return what a frame shows.

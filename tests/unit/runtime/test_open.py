@@ -1,16 +1,19 @@
 """Opening a session: every limit is an error of its field, and on the limit all is well."""
 
+import numpy as np
 import pytest
 
 from stridewire._errors import InvalidRequestError, NotFoundError, NotImplementedYetError
 from stridewire._messages import (
     CharacterSpec,
     GroundPose,
+    Step,
 )
+from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.library import Library, LibraryError
 from stridewire_engine.matching.presets import LOCOMOTION
 from stridewire_engine.runtime import Runtime
-from unit.runtime.conftest import opening
+from unit.runtime.conftest import one, opening
 
 NAN = float("nan")
 CHANNELS = [channel.name for channel in LOCOMOTION.channels]
@@ -112,3 +115,16 @@ def test_two_libraries_need_two_names(small_library: Library) -> None:
         Runtime([small_library, small_library])
     with pytest.raises(LibraryError, match="at least one"):
         Runtime([])
+
+
+def test_a_height_counts_as_it_comes_over_the_wire(runtime: Runtime) -> None:
+    """A height and the float32 that a wire makes of it give the very same poses on a rig."""
+    rig = REFERENCE.scaled(0.9)
+    frames = []
+    for height in (1.2, float(np.float32(1.2))):
+        spec = CharacterSpec(1, GroundPose((49.0, 0.0, 0.0), 4.0), height)
+        session = runtime.open(opening(1, characters=[spec], output_skeleton=rig))
+        frames.append([one(runtime, session, Step(i + 1, 1 / 60))[0] for i in range(4)])
+    for a, b in zip(*frames, strict=True):
+        np.testing.assert_array_equal(a.rotations, b.rotations)
+        np.testing.assert_array_equal(a.root, b.root)
