@@ -9,7 +9,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 STRIDEWIRE_DATA ?= $(abspath ../shared/data)
 export STRIDEWIRE_DATA PROTO_VENV
 
-.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge show-refiner page page-pictures site pictures reference image clean help
+.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge show-page show-refiner page page-pictures site pictures reference image clean help
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -52,6 +52,9 @@ show-surface: $(VENV)/.dev ## check what the interface claims, over the wire and
 
 show-judge: $(VENV)/.dev ## check how good streamed motion is, beside the captured and a naive baseline
 	$(BIN)/python tests/show/judge.py $(SHOW)
+
+show-page: $(VENV)/.dev ## check the page, files, engines, documents; BLENDER_PYTHON=PYTHON asks Blender, too
+	PYTHONPATH=tests $(BIN)/python tests/show/page.py $(SHOW)
 
 site: $(VENV)/.dev ## build the documents as web pages, build/site/index.html, all links checked
 	$(BIN)/python docs/site/build.py

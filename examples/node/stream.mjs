@@ -65,6 +65,7 @@ function drive(durationS) {
   const steps = Math.round(durationS * 60);
   const frames = [];
   let lastFrame = 0;
+  let sent = 0;
   call.write({ open: { characters: [{ id: 1 }] } });
   return new Promise((resolve, reject) => {
     call.on("error", reject);
@@ -74,6 +75,8 @@ function drive(durationS) {
       if (opened) send(1, performance.now());
       if (!frame) return;
       lastFrame = frame.frame;
+      // each Step acknowledges; when the last one has gone, frames that still come need a word of their own
+      if (sent === steps) call.write({ step: { last_frame: lastFrame, ack_only: true } });
       const latencyMs = performance.now() - 1000 * frame.client_time_s;
       frames.push({ latencyMs, z: frame.root[2], joints: frame.rotations.length / 4 });
       if (frame.applied_step === steps) call.write({ close: {} }), call.end();
@@ -85,6 +88,7 @@ function drive(durationS) {
         const client_time_s = scheduled / 1000;
         const velocity_xz = [0, 1.3];
         call.write({ step: { step, dt_s: 1 / 60, last_frame: lastFrame, client_time_s, velocity_xz } });
+        sent = step;
         if (step < steps) send(step + 1, begin);
       }, wait);
     }
