@@ -58,9 +58,8 @@ export class Timeline {
     const { canvas } = this;
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];
     const ratio = Math.min(devicePixelRatio, 2);
-    if (canvas.width !== Math.round(ratio * width)) {
-      [canvas.width, canvas.height] = [Math.round(ratio * width), Math.round(ratio * height)];
-    }
+    const [wide, high] = [Math.round(ratio * width), Math.round(ratio * height)];
+    if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
     const pen = canvas.getContext("2d");
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
