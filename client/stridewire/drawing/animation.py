@@ -48,7 +48,7 @@ def draw_animation(subject: Subject, path: Path | str) -> int:
 
     Args:
         subject: What to draw.
-        path: Where it goes: `.webp`, or `.gif`, which is several times as large.
+        path: Where it goes: `.webp`, or `.gif`, which is about twice as large.
 
     Returns:
         How many pictures it has.
