@@ -243,5 +243,5 @@ def _processor_s() -> float:
 if __name__ == "__main__":
     if not os.environ.get("STRIDEWIRE_DATA"):
         sys.exit("STRIDEWIRE_DATA names no capture; name the folder of its archives")
-    stages = [forced, natural, naive, responses, hard, sheets, critics, tuned, quick, table]
+    stages = [natural, naive, responses, forced, sheets, tuned, hard, critics, quick, table]
     sys.exit(show("judge", stages))

@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[2]
+_NO_RESULTS = ":(exclude)docs/results"
 
 
 @dataclass(frozen=True)
@@ -143,10 +144,12 @@ def _options(
 
 
 def _state_of_checkout() -> str:
-    """Return the commit, and a hash of what differs from it."""
+    """Return the commit, and a hash of what differs from it; results, which shows write, do not."""
     commit = _git("rev-parse", "HEAD").strip().decode()
-    digest = hashlib.sha256(_git("diff", "HEAD"))
-    for name in _git("ls-files", "-z", "--others", "--exclude-standard").split(b"\0"):
+    digest = hashlib.sha256(_git("diff", "HEAD", "--", ".", _NO_RESULTS))
+    for name in _git(
+        "ls-files", "-z", "--others", "--exclude-standard", "--", ".", _NO_RESULTS
+    ).split(b"\0"):
         path = ROOT / name.decode()
         if path.is_file():
             digest.update(name + path.read_bytes())
