@@ -40,12 +40,12 @@ HARD = {
 }
 REASONS = {
     "float_cm": (
-        "a foot that is brought back to its clip's place within its step is lifted on the way, and "
-        "labels call a foot planted while it still lifts"
+        "a toe in the air that the new clip calls planted comes down within some frames; without a "
+        "transition in the last half second float is the captured (block 3)"
     ),
     "truth_error_cm": (
-        "the naive row jumps at every frame to what is nearest, so most of its jumps are between "
-        "moments that hardly differ (see transitions_per_s)"
+        "planted toes stay where they are for a while, so feet are elsewhere than in either clip; "
+        "the naive row also jumps twice as often, and so between nearer moments"
     ),
 }
 """Why a figure may be no better than the naive row's."""

@@ -114,13 +114,18 @@ def criticise(
             samples = (seen.seams, seen.captured, quoted.seams, quoted.captured)
             part = critic.judge(*(Sample(s.features[:, columns], s.takes) for s in samples))
             yield {**head, "row": "streamed", "joints": joints, **_numbers(part, quoted.seams)}
-        if min(len(seen.quiet.takes), len(quoted.quiet.takes)) >= critic.LEAST_WINDOWS:
+        if _enough(seen.quiet, quoted.quiet):
             verdict = critic.judge(seen.quiet, seen.captured, quoted.quiet, quoted.captured)
             yield {**head, "row": "quiet", "joints": "all", **_numbers(verdict, quoted.quiet)}
-        if number == 0:
-            verdict = critic.judge(*_halves(seen.captured), *_halves(quoted.captured))
+        halves = (*_halves(seen.captured), *_halves(quoted.captured))
+        if number == 0 and _enough(*halves):
+            verdict = critic.judge(*halves)
             own = {**head, "row": "captured", "stitch": "", "joints": "all"}
             yield {**own, **_numbers(verdict, quoted.captured)}
+
+
+def _enough(*samples: Sample) -> bool:
+    return min(len(sample.takes) for sample in samples) >= critic.LEAST_WINDOWS
 
 
 def _halves(sample: Sample) -> tuple[Sample, Sample]:
