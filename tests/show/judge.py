@@ -194,6 +194,11 @@ def responses() -> Iterator[Point]:
                 "within 1.15 times the library's 25th percentile",
                 own is None or row["response_s"] <= 1.15 * own,
             )
+        for row in measure_responses(Bench(library(name).path), TickSettings(), responsiveness=1.0):
+            keep(iter([row]))
+            yield Point(
+                f"{row['change']} at responsiveness 1, {name}", f"{row['response_s']:.2f} s"
+            )
 
 
 def table() -> Iterator[Point]:

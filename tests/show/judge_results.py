@@ -17,7 +17,8 @@ ALL = (*QUOTED, "cmu-seen", "synthetic")
 RESULTS = ROOT / "docs" / "results" / "judge.json"
 _NAMES = (
     "library", "script", "row", "stitch", "foot_lock", "forced_interval_frames", "block",
-    "match_rank", "root_scale", "label_shift_frames", "change", "trained_on", "joints",
+    "match_rank", "root_scale", "label_shift_frames", "change", "responsiveness", "trained_on",
+    "joints",
 )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ both.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from stridewire_engine.evaluation.streaming import PER_SEED, RATE, Wanted
 from stridewire_engine.evaluation.tally import DRAWS
 from stridewire_engine.library import Library
 from stridewire_engine.runtime import TickSettings
+from stridewire_engine.runtime.response import NEUTRAL
 
 LEAST_EVENTS = 8
 """A library that holds fewer of a change has no own time for it."""
@@ -51,10 +52,14 @@ CHANGES = (
 
 
 def measure_responses(
-    bench: Bench, settings: TickSettings, seeds: tuple[int, ...] = REPORT_SEEDS
+    bench: Bench,
+    settings: TickSettings,
+    seeds: tuple[int, ...] = REPORT_SEEDS,
+    responsiveness: float = NEUTRAL,
 ) -> Iterator[dict[str, Any]]:
     """Yield one flat row for each change."""
-    for change, times in zip(CHANGES, streamed_times(bench, settings, seeds), strict=True):
+    streamed = streamed_times(bench, settings, seeds, responsiveness)
+    for change, times in zip(CHANGES, streamed, strict=True):
         events = library_times(bench.library, change)
         finite = np.minimum(times, _LONGEST_S)
         drawn = np.random.default_rng(0).choice(finite, (DRAWS, len(finite))).mean(axis=1)
@@ -62,6 +67,7 @@ def measure_responses(
         yield {
             "library": bench.library.name,
             "change": change.name,
+            "responsiveness": responsiveness,
             "response_s": round(float(np.median(finite)), 3),
             "response_mean_s": round(float(finite.mean()), 3),
             "response_mean_s_low": round(float(np.percentile(drawn, 2.5)), 3),
@@ -73,10 +79,11 @@ def measure_responses(
 
 
 def streamed_times(
-    bench: Bench, settings: TickSettings, seeds: tuple[int, ...]
+    bench: Bench, settings: TickSettings, seeds: tuple[int, ...], responsiveness: float
 ) -> Iterator[Floats]:
     """Yield for each change the seconds that its characters take from the command to 90 %."""
-    cells = [Cell(change.name, seeds=seeds, settings=settings) for change in CHANGES]
+    same = Cell("", seeds=seeds, settings=settings, responsiveness=responsiveness)
+    cells = [replace(same, script=change.name) for change in CHANGES]
     asked = [_wanted(change, seeds) for change in CHANGES]
     made = bench.run_under(cells, [wanted for wanted, _ in asked])
     for change, (_, at), stream in zip(CHANGES, asked, made, strict=True):
