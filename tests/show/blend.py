@@ -109,12 +109,11 @@ def held_out() -> Iterator[Point]:
 
 
 @cache
-def _measured(name: str, step: float) -> Measured:
+def _measured(name: str, step: float, silenced: bool = False) -> Measured:
     network = blend_network()
-    methods = {
-        "neural": as_served(network),
-        "silenced": as_served(Silenced(network.model)),
-    }
+    methods = {"neural": as_served(network)}
+    if silenced:
+        methods["silenced"] = as_served(Silenced(network.model))
     return measure(frames(name), methods, network.deviation, step=step)
 
 
@@ -184,7 +183,7 @@ def _interval(row: dict[str, float], key: str, unit: str) -> str:
 
 def silenced() -> Iterator[Point]:
     """With the network's output set to nothing the figures get worse."""
-    measured = _measured("cmu", 0.25)
+    measured = _measured("cmu", 1.0, silenced=True)
     for name in ("position_error_cm", "sliding_c_cm_s"):
         own, without = (_over_all(measured, method)[name] for method in ("neural", "silenced"))
         figure = f"{without:.2f}, with the network {own:.2f}"

@@ -125,6 +125,16 @@ def test_the_network_changes_the_way(pair: MakePair) -> None:
     assert np.abs(neural.pose.rotations[2] - linear.pose.rotations[2]).max() > 1e-3
 
 
+def test_one_posture_is_blended_to_itself(pair: MakePair) -> None:
+    """Between a moment and itself there is nothing else, whatever time is said to lie between."""
+    blended = one(pair(1.0, 1.0, method=BlendMethod.NEURAL, duration=0.5))
+    assert blended.method is BlendMethod.NEURAL
+    positions = forward_world(REFERENCE, blended.pose)[0]
+    np.testing.assert_allclose(
+        positions, np.broadcast_to(positions[:1], positions.shape), atol=EXACT
+    )
+
+
 @pytest.mark.parametrize("method", [BlendMethod.NEURAL, BlendMethod.AUTO])
 def test_what_is_too_far_out_is_blended_linearly(
     pair: MakePair, random_pose: Callable[..., Pose], method: BlendMethod
