@@ -73,6 +73,8 @@ def _with_feet(between: Postures, pairs: Pairs) -> Postures:
 def microseconds(method: Method, pairs: Pairs) -> dict[int, float]:
     """Return the median time per posture at batch sizes: that many pairs, one weight each.
 
+    The time that the thread worked, so that other work on the machine counts little.
+
     Args:
         method: To time, on one thread.
         pairs: At least as many as the largest batch, at one weight.
@@ -83,7 +85,7 @@ def microseconds(method: Method, pairs: Pairs) -> dict[int, float]:
 def _microseconds(method: Method, pairs: Pairs) -> float:
     times = []
     for _ in range(_ROUNDS):
-        began = time.perf_counter()
+        began = time.thread_time()
         method(pairs)
-        times.append(time.perf_counter() - began)
+        times.append(time.thread_time() - began)
     return 1e6 * float(np.median(times))
