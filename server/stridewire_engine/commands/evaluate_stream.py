@@ -17,7 +17,7 @@ from stridewire_engine.evaluation.pictures import draw_sheets, draw_table
 from stridewire_engine.evaluation.responses import measure_responses
 from stridewire_engine.evaluation.table import rows
 from stridewire_engine.runtime import TickSettings
-from stridewire_engine.stitchers import STITCHER_NAMES
+from stridewire_engine.stitchers import DEFAULT_STITCHER, STITCHER_NAMES
 
 SCRIPTS = tuple(name for name in SCRIPT_NAMES if name != "walk-turn-stop")
 QUICK_SCRIPTS = ("stroll", "sprint", "u-turns", "idle")
@@ -79,7 +79,7 @@ def stream(
     for path in libraries:
         open_library(path)
     if quick:
-        scripts, stitchers = scripts or QUICK_SCRIPTS, stitchers or STITCHER_NAMES[:1]
+        scripts, stitchers = scripts or QUICK_SCRIPTS, stitchers or (DEFAULT_STITCHER,)
     cells = list(_cells(scripts or SCRIPTS, stitchers or STITCHER_NAMES, forced, quick))
     table: list[dict[str, Any]] = []
     for path in libraries:

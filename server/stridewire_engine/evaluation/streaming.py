@@ -23,7 +23,7 @@ from stridewire_engine.matching.search import Found, Matcher
 from stridewire_engine.runtime import TickSettings, sampling
 from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.runtime.tick import Block, Tick
-from stridewire_engine.stitchers import STITCHER_NAMES
+from stridewire_engine.stitchers import DEFAULT_STITCHER, STITCHER_NAMES
 
 RATE = 60.0
 PER_SEED = 2
@@ -141,7 +141,7 @@ def begin(matcher: Matcher, cell: Cell, wanted: Wanted, settings: TickSettings) 
     state.until_search[:] = state.stagger * settings.search_interval
     state.root_position[:, 0] = _SPACING * np.arange(count)
     state.sim_position[:] = state.root_position[:, ::2]
-    state.stitcher[:] = STITCHER_NAMES.index(cell.stitch) if cell.stitch else 0
+    state.stitcher[:] = STITCHER_NAMES.index(cell.stitch or DEFAULT_STITCHER)
     state.foot_lock[:] = cell.foot_lock
     heading = np.arctan2(wanted.velocity[0, :, 0], wanted.velocity[0, :, 1])
     heading = np.where(np.isnan(wanted.facing[0]), heading, wanted.facing[0])

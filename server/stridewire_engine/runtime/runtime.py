@@ -47,7 +47,7 @@ from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.output import Output
 from stridewire_engine.runtime.session import Session
 from stridewire_engine.runtime.settings import TickSettings
-from stridewire_engine.stitchers import STITCHER_NAMES
+from stridewire_engine.stitchers import DEFAULT_STITCHER, STITCHER_NAMES
 
 Recorder = Callable[[Open, Opened], SessionWriter]
 """From what was asked for and answered to the file that a session is recorded in."""
@@ -137,7 +137,7 @@ class Runtime:
             message.format,
             message.detail,
             message.seed,
-            STITCHER_NAMES[0],
+            DEFAULT_STITCHER,
         )
         output = Output(message, crowd.library.skeleton)
         opened = Opened(

@@ -29,7 +29,7 @@ from stridewire_engine.runtime.output import Output
 from stridewire_engine.runtime.response import NEUTRAL
 from stridewire_engine.runtime.roster import Roster
 from stridewire_engine.runtime.tick import Block
-from stridewire_engine.stitchers import STITCHER_NAMES
+from stridewire_engine.stitchers import DEFAULT_STITCHER, STITCHER_NAMES
 
 _MAX_VIOLATIONS = 100
 _UPDATABLE = ("stitcher", "foot_lock", "filter", "weights", "responsiveness")
@@ -204,7 +204,7 @@ class Session:
     def _set(self, row: int, spec: CharacterSpec, names: Iterable[str]) -> None:
         state = self.crowd.state
         if "stitcher" in names:
-            chosen = spec.stitcher or STITCHER_NAMES[0]
+            chosen = spec.stitcher or DEFAULT_STITCHER
             state.stitcher[row] = STITCHER_NAMES.index(chosen)
         if "foot_lock" in names:
             state.foot_lock[row] = spec.foot_lock

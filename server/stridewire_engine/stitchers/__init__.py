@@ -23,6 +23,7 @@ from stridewire_engine.stitchers.stitcher import (
 
 __all__ = [
     "AUTO",
+    "DEFAULT_STITCHER",
     "STITCHERS",
     "STITCHER_NAMES",
     "STITCH_COLUMNS",
@@ -42,9 +43,11 @@ STITCHERS: tuple[Stitcher, ...] = (
     DeadBlend(),
     Stance(),
 )
-"""All stitchers, the default first; a character holds an index into this tuple, or `AUTO`."""
+"""All stitchers; a character holds an index into this tuple, or `AUTO`."""
 
 AUTO = len(STITCHERS)
 """Stands for the better of two at each transition; see `auto`."""
 STITCHER_NAMES = (*(stitcher.name for stitcher in STITCHERS), "auto")
 """What a caller can ask for, by index."""
+DEFAULT_STITCHER = "spring"
+"""For callers that ask for none."""

@@ -11,6 +11,7 @@ from stridewire._messages import (
 )
 from stridewire_engine.library import Library
 from stridewire_engine.runtime import Runtime
+from stridewire_engine.stitchers import DEFAULT_STITCHER, STITCHER_NAMES
 from unit.runtime.conftest import DT, one, opening
 
 
@@ -104,9 +105,10 @@ def test_updates_change_what_the_mask_names(runtime: Runtime) -> None:
     """Stitcher and foot lock may change while the character runs, and nothing else does."""
     session = runtime.open(opening(1))
     spec = CharacterSpec(10, stitcher="none", foot_lock=False)
+    default = STITCHER_NAMES.index(DEFAULT_STITCHER)
     assert runtime.edit(session, Edit(update=[CharacterUpdate(spec, ("foot_lock",))])) is None
     state = session.crowd.state
     row = session.rows[0]
-    assert (bool(state.foot_lock[row]), int(state.stitcher[row])) == (False, 0)
+    assert (bool(state.foot_lock[row]), int(state.stitcher[row])) == (False, default)
     assert runtime.edit(session, Edit(update=[CharacterUpdate(spec, ("stitcher",))])) is None
     assert int(state.stitcher[row]) == 1
