@@ -84,7 +84,8 @@ class Judge:
         toes = in_time[..., _TOES, :]
         speed = metrics.planar_speed(toes, FRAME_RATE)
         slid = metrics.sliding_c(speed, planted)
-        near = metrics.sliding_a(speed, toes[..., 1] - self._floor)
+        height = toes[..., 1] - self._floor
+        near = metrics.sliding_a(speed, height)
         away = np.linalg.norm(here - there, axis=-1)
         jerk = metrics.jerk(in_time, FRAME_RATE)
         since = np.arange(after.shape[1]) - pairs.seam
@@ -94,6 +95,8 @@ class Judge:
         return {
             "sliding_a_cm_s": _sum(100.0 * _back(near), after),
             "sliding_c_cm_s": _sum(100.0 * _back(slid), after),
+            "float_cm": _sum(100.0 * _back(metrics.floating(height, planted)), after),
+            "penetration_cm": _sum(100.0 * _back(metrics.penetration(height, planted)), after),
             "position_error_cm": _sum(100.0 * away, after),
             "foot_error_cm": _sum(100.0 * away[..., _FEET], after),
             "mse": _sum(error, after),
