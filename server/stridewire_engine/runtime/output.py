@@ -5,6 +5,7 @@ that is as much smaller or larger: what a caller asks for is divided by the char
 it is shown is multiplied. So strides fit legs, and limbs keep their directions.
 """
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -44,7 +45,8 @@ class Output:
     def __init__(self, opening: Open, library_skeleton: Skeleton) -> None:
         self._halves = opening.format is PoseFormat.F16
         self._posing: Posing | None = None
-        rig = _rig("open.output_skeleton", opening.output_skeleton or library_skeleton)
+        skeleton = _as_sent(opening.output_skeleton) or library_skeleton
+        rig = _rig("open.output_skeleton", skeleton)
         self.skeleton = rig.skeleton
         self._height = rig.height
         self._scale = 1.0
@@ -55,9 +57,13 @@ class Output:
         self._planting = Planting.fresh(0)
 
     def scale(self, height_m: float) -> float:
-        """Return the size of a character in the reference's; of the skeleton's own for height 0."""
-        exact = float(np.float32(height_m))  # what comes over the wire: so in process, too
-        return self._scale * (exact / self._height if exact else 1.0)
+        """Return the size of a character in the reference's; of the skeleton's own for height 0.
+
+        Args:
+            height_m: Counted as it comes over the wire, in float32.
+        """
+        sent = float(np.float32(height_m))
+        return self._scale * (sent / self._height if sent else 1.0)
 
     def show(self, block: Block, rows: slice, ids: Indices, scales: Floats, dt: float) -> Shown:
         """Return what a frame shows.
@@ -115,6 +121,13 @@ class Output:
             self._planting.put(here, kept, there)
             self._ids = ids
         return self._planting
+
+
+def _as_sent(skeleton: Skeleton | None) -> Skeleton | None:
+    """Return a skeleton as it comes over the wire, so that frames in process are the same."""
+    if skeleton is None:
+        return None
+    return replace(skeleton, offsets=skeleton.offsets.astype(np.float32))
 
 
 def _rig(path: str, skeleton: Skeleton) -> Rig:

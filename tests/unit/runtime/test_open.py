@@ -1,5 +1,7 @@
 """Opening a session: every limit is an error of its field, and on the limit all is well."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -117,11 +119,12 @@ def test_two_libraries_need_two_names(small_library: Library) -> None:
         Runtime([])
 
 
-def test_a_height_counts_as_it_comes_over_the_wire(runtime: Runtime) -> None:
-    """A height and the float32 that a wire makes of it give the very same poses on a rig."""
-    rig = REFERENCE.scaled(0.9)
+def test_sizes_count_as_they_come_over_the_wire(runtime: Runtime) -> None:
+    """A rig and a height, and the float32 that a wire makes of them, give the very same poses."""
+    given = REFERENCE.scaled(0.9)
+    sent = replace(given, offsets=given.offsets.astype(np.float32))
     frames = []
-    for height in (1.2, float(np.float32(1.2))):
+    for rig, height in ((given, 1.2), (sent, float(np.float32(1.2)))):
         spec = CharacterSpec(1, GroundPose((49.0, 0.0, 0.0), 4.0), height)
         session = runtime.open(opening(1, characters=[spec], output_skeleton=rig))
         frames.append([one(runtime, session, Step(i + 1, 1 / 60))[0] for i in range(4)])
