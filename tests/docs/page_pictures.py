@@ -16,7 +16,8 @@ from tempfile import TemporaryDirectory
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from browsing import Visit, absent, visit
-from stridewire.testing import serve
+from stridewire.formats.bvh_writing import write_bvh
+from stridewire_engine.building.synthetic import synthetic_clips
 
 IMAGES = Path(__file__).parents[2] / "docs" / "images"
 WIDE = (1280, 760)
@@ -90,28 +91,17 @@ def on_a_phone(url: str, out: Path) -> None:
         shoot(visiting, out / "play-phone.png")
 
 
-def side_by_side(address: str, folder: Path, out: Path) -> None:
-    """Two files at the same moment.
+def side_by_side(folder: Path, out: Path) -> None:
+    """Two generated clips at the same moment.
 
     Args:
-        address: Of a server that makes them.
-        folder: Where they go.
+        folder: Where their files go.
         out: Where the picture goes.
     """
-    files = []
-    for script in ("walk-turn-stop", "u-turns"):
-        files.append(folder / f"{script}.bvh")
-        command = [
-            sys.executable,
-            "-m",
-            "stridewire",
-            "stream",
-            "--script",
-            script,
-            "--seconds",
-            "6",
-        ]
-        subprocess.run([*command, "--address", address, "--out", files[-1]], check=True)
+    clips = {clip.name: clip for clip in synthetic_clips()}
+    files = [folder / "walk.bvh", folder / "about-turn.bvh"]
+    for path, name in zip(files, ("walk-1.4", "about-turn-1.3-left"), strict=True):
+        write_bvh(path, clips[name])
     with playing(*map(str, files)) as url, visit(url, WIDE) as visiting:
         visiting.wait("play.time > 0 && play.subjects.every(({ bodies }) => bodies)", 300.0)
         visiting.page.get_by_label("time").fill("2.6")
@@ -134,8 +124,8 @@ def main() -> int:
             for take in live:
                 take(url, given.out)
     if wanted(side_by_side, given.names):
-        with serve(*filter(None, [given.library])) as address, TemporaryDirectory() as folder:
-            side_by_side(address, Path(folder), given.out)
+        with TemporaryDirectory() as folder:
+            side_by_side(Path(folder), given.out)
     return 0
 
 
