@@ -93,6 +93,8 @@ def _points(name: str, path: str) -> Iterator[Point]:
             apart = refine[f"{figure}_high"] < table[other][f"{figure}_low"]
             told = f"{_spread(refine, figure)} cm/s, {other} {_spread(table[other], figure)}"
             yield Point(f"{where}: {title} beside {other}", told, "below, intervals apart", apart)
+        of_stance = _spread(refine, f"{figure}_of_stance")
+        yield Point(f"{where}: {title}, of stance's on the same takes", of_stance)
     told = f"{refine['npss']:.3f}, quintic {quintic['npss']:.3f}"
     better = refine["npss"] <= quintic["npss"]
     yield Point(f"{where}: NPSS", told, "no worse than the quintic's", better)
