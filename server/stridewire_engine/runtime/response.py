@@ -1,8 +1,8 @@
 """Response: what a character gives up of quality for following its control, or the other way.
 
 A responsiveness of 0.5 is the settings of the tick and the weights as they are. From there to 0 and
-to 1 each number moves evenly on a log scale to a multiple of itself; the multiples are those of the
-ends of the front that `stridewire evaluate tune` found.
+to 1 each number moves evenly on a log scale to a multiple of itself. The multiples point where the
+front of `stridewire evaluate tune` lies; `docs/quality.md` says what they were measured to do.
 """
 
 from typing import NamedTuple
@@ -27,7 +27,7 @@ class Multiples(NamedTuple):
 
 NEUTRAL = 0.5
 """Responsiveness under which nothing is multiplied."""
-QUALITY = Multiples(1.75, 1.3, 1.5, 0.5)
+QUALITY = Multiples(1.32, 1.14, 1.22, 0.71)
 """At responsiveness 0."""
 RESPONSE = Multiples(0.8, 0.7, 0.4, 2.5)
 """At responsiveness 1."""
