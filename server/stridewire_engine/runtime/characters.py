@@ -16,6 +16,8 @@ SHOWN_JOINTS = ("LeftFoot", "RightFoot", "LeftToe", "RightToe", "Hips")
 """Joints whose shown place is remembered for the next query."""
 RECENT_CHOICES = 4
 """So many choices of a character are remembered."""
+PAST_FRAMES, GUIDED_FRAMES = 8, 52
+"""Frames before and after a transition that a network is told of."""
 
 
 @dataclass
@@ -139,6 +141,22 @@ class Characters:
     legs_shown: Quaternions = column(6, 4)
     stitched_by: Indices = column(dtype=np.int8)
     """Index of the stitcher that hides the last transition; a change counts from the next."""
+
+    # the network that guides feet; see `refining`
+    past_root: Floats = column(PAST_FRAMES, 4, dtype=np.float64)
+    """x, y, z, yaw in the last frames, the newest last."""
+    past_shown: Vectors = column(PAST_FRAMES, len(SHOWN_JOINTS), 3, dtype=np.float64)
+    """`SHOWN_JOINTS` in the world in the last frames."""
+    past_contacts: Flags = column(PAST_FRAMES, 2, dtype=np.bool_)
+    past_frames: Indices = column(dtype=np.int8)
+    """How many of them follow each other evenly."""
+    guide_frames: Indices = column(dtype=np.int8)
+    """For how many frames after the last transition there is a guide."""
+    guide_planted: Floats = column(GUIDED_FRAMES, 2)
+    guide_offset: Vectors = column(GUIDED_FRAMES, 2, 3)
+    """In the world."""
+    fallback: Indices = column(dtype=np.int8)
+    """Why there is no guide: a `Fallback`."""
 
     # the feet: left and right
     planted: Flags = column(2, dtype=np.bool_)

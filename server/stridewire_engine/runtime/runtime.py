@@ -42,6 +42,7 @@ from stridewire.motion.array_types import Floats
 from stridewire_engine import blending
 from stridewire_engine.library import Library, LibraryError
 from stridewire_engine.networks.blend import blend_network
+from stridewire_engine.networks.rmr.refiner import refiner_if_shipped
 from stridewire_engine.runtime import admission, catalogue, queries
 from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.output import Output
@@ -226,7 +227,7 @@ class Runtime:
         return ServerInfo(
             version=__version__,
             libraries=tuple(library.info() for library in self.libraries.values()),
-            models={"blend": blend_network().model.hash},
+            models=_models(),
             limits=self._limits,
             stitchers=STITCHER_NAMES,
             sessions=len(self._sessions),
@@ -263,3 +264,10 @@ class Runtime:
                 f"no library {name!r} is open here; open are {', '.join(self._crowds)}"
             )
         return self._crowds[name]
+
+
+def _models() -> dict[str, str]:
+    """Return the hashes of the networks, by name."""
+    models = {"blend": blend_network().model.hash}
+    refiner = refiner_if_shipped()
+    return models if refiner is None else {**models, "rmr": refiner.model.hash}

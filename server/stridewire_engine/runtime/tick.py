@@ -11,8 +11,19 @@ import numpy as np
 from stridewire._messages import TransitionReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
+from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.matching.search import Matcher
-from stridewire_engine.runtime import choice, feet, ground, intent, root, sampling, standing
+from stridewire_engine.networks.rmr.refiner import refiner_if_shipped
+from stridewire_engine.runtime import (
+    choice,
+    feet,
+    ground,
+    intent,
+    refining,
+    root,
+    sampling,
+    standing,
+)
 from stridewire_engine.runtime.characters import Characters, contiguous
 from stridewire_engine.runtime.choice import Jumps, Sets
 from stridewire_engine.runtime.lookahead import LegTracks, legs_ahead
@@ -34,7 +45,7 @@ from stridewire_engine.stitchers.stitcher import turn_to_world
 
 _AUTO_FRAMES = 24
 """So many frames of the new clip tell which stitcher hides a transition best."""
-_SPRING, _STANCE = (STITCHER_NAMES.index(name) for name in ("spring", "stance"))
+_SPRING, _STANCE, _REFINE = (STITCHER_NAMES.index(name) for name in ("spring", "stance", "refine"))
 
 
 @dataclass(frozen=True)
@@ -62,6 +73,8 @@ class Block:
     jumps: Jumps | None
     """Who jumped; None if nobody searched."""
     timings_ms: dict[str, float]
+    fell_back: Flags
+    """`(N,)` who asked for `refine` and is stitched by `stance` instead."""
 
 
 class Tick:
@@ -90,6 +103,12 @@ class Tick:
         self._tracks = LegTracks.of(matcher.library, self._legs)
         self._spans = standing.Spans.of(matcher.library, settings.clip_end_margin)
         self._times = np.array(matcher.schema.trajectory_times)
+        self._refining: refining.Refining | None = None
+        refiner = refiner_if_shipped()
+        if refiner is not None and matcher.library.skeleton == REFERENCE:
+            self._refining = refining.Refining(
+                matcher.library, self._tracks, self._legs, refiner, settings.root_halflife
+            )
 
     def step(self, state: Characters, dt: Floats, sets: Sets) -> Block:
         """Advance all rows of `state` in place by `dt` `(N,)` seconds and return what is shown.
@@ -143,6 +162,7 @@ class Tick:
         rotations = feet.plant(
             state, self._legs, hips, rotations, contacts, _stands(state), dt, settings
         )
+        refining.remember(state, contacts, dt)
         before_lift = state.terrain[:, 0].copy()
         rows = contiguous(np.flatnonzero(state.has_ground))
         if isinstance(rows, slice) or len(rows):
@@ -212,7 +232,18 @@ class Tick:
         rows.recent[:, 1:], rows.recent[:, 0] = rows.recent[:, :-1].copy(), jumps.to_row
         rows.recent_time[:, 1:] = rows.recent_time[:, :-1].copy()
         rows.recent_time[:, 0] = rows.time
+        self._ask(rows, ~begins & (by == _REFINE))
         state.put(jumps.characters, rows)
+
+    def _ask(self, rows: Characters, refines: Flags) -> None:
+        """Ask the network about those whose transition it is to refine."""
+        rows.guide_frames[...] = 0
+        rows.fallback[...] = np.where(refines, refining.Fallback.NO_NETWORK, 0)
+        mine = np.flatnonzero(refines)
+        if len(mine) and self._refining is not None:
+            part = rows.take(mine)
+            self._refining.plan(part)
+            rows.put(mine, part)
 
     def _stitchers(
         self, rows: Characters, new: sampling.Moments, source: Motion, target: Motion
@@ -245,8 +276,11 @@ class Tick:
         passed = np.maximum(dt, 1e-6)[:, None]
         pull = (delta[:, [0, 2, 3]] - motion) / passed - state.root_offset
         small_dt = dt.astype(np.float32)
-        for index, stitcher in enumerate(STITCHERS):
-            mine = contiguous(np.flatnonzero(state.stitched_by == index))
+        led = (state.stitched_by == _REFINE) & refining.guided(state)
+        crews = [(s, (state.stitched_by == i) & ~led, False) for i, s in enumerate(STITCHERS)]
+        crews.append((STITCHERS[_REFINE], led, True))
+        for stitcher, chosen, is_led in crews:
+            mine = contiguous(np.flatnonzero(chosen))
             if not isinstance(mine, slice) and not len(mine):
                 continue
             part, seen = offsets.take(mine), sample.take(mine)
@@ -259,6 +293,8 @@ class Tick:
                         rows, self._matcher.library, self._tracks, times, pull[mine], halflife
                     )
                 )
+            if is_led:
+                seen = refining.guide(state.take(mine), seen)
             hips[mine], rotations[mine] = stitcher.apply(part, seen, small_dt[mine])
             offsets.put(mine, part)
         return hips, rotations
@@ -305,6 +341,7 @@ class Tick:
             entered,
             jumps,
             timings.elapsed_ms,
+            (state.fallback > 0) & (state.stitched_by == _REFINE),
         )
 
 

@@ -9,6 +9,7 @@ from stridewire_engine.stitchers.cut import Cut
 from stridewire_engine.stitchers.dead_blend import DeadBlend
 from stridewire_engine.stitchers.inertialization import SpringInertialization
 from stridewire_engine.stitchers.quintic import QuinticInertialization
+from stridewire_engine.stitchers.refine import Refine
 from stridewire_engine.stitchers.stance import Stance
 from stridewire_engine.stitchers.stitcher import (
     STITCH_COLUMNS,
@@ -42,6 +43,7 @@ STITCHERS: tuple[Stitcher, ...] = (
     QuinticInertialization(),
     DeadBlend(),
     Stance(),
+    Refine(),
 )
 """All stitchers; a character holds an index into this tuple, or `AUTO`."""
 

@@ -57,6 +57,8 @@ class Stance:
     settled_s = 2.81 * _BODY_HALFLIFE
     keeps_root_velocity = True
     plants_feet = True
+    always_reaches = False
+    """Whether hips drop and heels rise for feet that are guided, too."""
     looks_ahead: tuple[float, ...] = (2 / 60, 4 / 60, 7 / 60, 11 / 60, 16 / 60)
 
     def begin(self, state: StitchState, source: Motion, target: Motion, roots: Roots) -> None:
@@ -81,7 +83,9 @@ class Stance:
         toes = self._step(state, sample, target, dt)
         body = leg_pose(sample.legs, hips, rotations)
         shown = sample.roots.to_root(toes.position).astype(np.float32)
-        if sample.guide is None:
+        if sample.guide is not None:
+            body = turn_feet(sample.legs, body, sample.guide.foot_turn)
+        if sample.guide is None or self.always_reaches:
             drop = _drop(state, sample.ahead, sample, toes, dt)
             body = body.lowered(drop)
             own = np.linalg.norm(body.hip - body.ankle, axis=-1)
@@ -89,7 +93,7 @@ class Stance:
         else:
             # a guide leads feet where legs reach; drops and raised heels would but jerk knees
             drop = _drop(state, None, sample, toes, dt)
-            body = turn_feet(sample.legs, body, sample.guide.foot_turn).lowered(drop)
+            body = body.lowered(drop)
             ankles = shown + (body.ankle - body.toe)
         bent, ankles = bend(sample.legs, body, rotations, ankles)
         self._remember(state, sample, target, toes, ankles + (body.toe - body.ankle))

@@ -1,0 +1,109 @@
+"""The stitcher `refine`, live: the network guides feet after transitions, or it is told why not."""
+
+import numpy as np
+import pytest
+
+from stridewire._messages import CharacterSpec, Frame, FrameFlag, GroundPose, Open, Step
+from stridewire_engine.library import Library
+from stridewire_engine.networks.rmr import Guidance, Plans
+from stridewire_engine.runtime import Runtime
+from stridewire_engine.runtime.characters import GUIDED_FRAMES, PAST_FRAMES
+from stridewire_engine.runtime.refining import MOST_A_TICK, Fallback
+
+
+class StandIn:
+    """Takes the place of the network; remembers what it was asked."""
+
+    furthest = 2.0
+
+    def __init__(self, distance: float = 1.0, offset: float = 0.0) -> None:
+        self.distance, self.offset = distance, offset
+        self.asked: list[Plans] = []
+
+    def refine(self, plans: Plans) -> Guidance:
+        """Say that the clips are right, but for an offset after the seam."""
+        self.asked.append(plans)
+        offset = np.zeros((*plans.contacts.shape, 3))
+        offset[..., 0] = self.offset * (plans.since_first > 0)[..., None]
+        planted = plans.contacts.astype(np.float64)
+        return Guidance(planted, offset, 0.0 * offset, np.full(len(plans), self.distance))
+
+
+def walk(
+    library: Library,
+    network: StandIn,
+    count: int = 2,
+    dt: float = 1 / 60,
+    stitcher: str = "refine",
+    seconds: float = 3.0,
+) -> tuple[list[Frame], Runtime]:
+    """Walk half of the time one way and as long another way."""
+    runtime = Runtime([library], clock=lambda: 0.0)
+    tick = runtime._crowd("")._tick
+    assert tick._refining is not None
+    tick._refining._refiner = network  # type: ignore[assignment]
+    specs = [CharacterSpec(i, GroundPose((3.0 * i, 0, 0)), stitcher=stitcher) for i in range(count)]
+    session = runtime.open(Open(specs, seed=5))
+    frames = []
+    for i in range(round(seconds / dt)):
+        velocity = np.tile([[0.0, 1.4]] if i * dt < seconds / 2 else [[1.4, 0.0]], (count, 1))
+        ((frame, _),) = runtime.advance([(session, Step(i, dt, velocity_xz=velocity))])
+        frames.append(frame)
+    return frames, runtime
+
+
+def fallbacks(frames: list[Frame]) -> int:
+    """Count the frames in which somebody fell back."""
+    return sum(len(frame.flagged(FrameFlag.FALLBACK)) > 0 for frame in frames)
+
+
+def test_the_network_is_asked_at_transitions(small_library: Library) -> None:
+    """Plans go on from what was shown to what comes, without a step of the root."""
+    network = StandIn()
+    frames, _ = walk(small_library, network)
+    assert network.asked
+    assert not fallbacks(frames)
+    for plans in network.asked:
+        assert plans.frames == PAST_FRAMES + GUIDED_FRAMES
+        steps = np.linalg.norm(np.diff(plans.root, axis=1), axis=-1)
+        assert steps.max() < 0.1
+        seam = np.linalg.norm(plans.toes[:, PAST_FRAMES] - plans.toes[:, PAST_FRAMES - 1], axis=-1)
+        assert seam.max() < 0.12
+
+
+def test_what_it_says_moves_feet_and_no_sent_frame(small_library: Library) -> None:
+    """Frames are alike up to the first guided one; later ones differ; none jumps."""
+    (still, _), (moved, _) = (walk(small_library, StandIn(offset=o)) for o in (0.0, 0.15))
+    differs = [
+        not np.array_equal(a.rotations, b.rotations) for a, b in zip(still, moved, strict=True)
+    ]
+    assert any(differs)
+    assert np.isfinite([frame.rotations for frame in moved]).all()
+    turns = np.abs(np.diff([frame.rotations for frame in moved], axis=0)).max()
+    assert turns < 0.5
+
+
+@pytest.mark.parametrize(
+    ("network", "dt", "why"),
+    [
+        (StandIn(distance=3.0), 1 / 60, Fallback.UNLIKE_TRAINING),
+        (StandIn(), 1 / 30, Fallback.OTHER_RATE),
+    ],
+)
+def test_who_cannot_be_refined_falls_back(
+    small_library: Library, network: StandIn, dt: float, why: Fallback
+) -> None:
+    """Stitched by stance, flagged in the frames, and the reason is kept."""
+    frames, runtime = walk(small_library, network, dt=dt)
+    assert fallbacks(frames)
+    assert why in runtime._crowd("").state.fallback
+    plain, _ = walk(small_library, network, dt=dt, stitcher="stance")
+    np.testing.assert_allclose(frames[-1].rotations, plain[-1].rotations, atol=1e-5)
+
+
+def test_a_tick_refines_no_more_than_it_may(small_library: Library) -> None:
+    """All jump at once: so many are refined, the others flagged."""
+    network = StandIn()
+    frames, _ = walk(small_library, network, count=2 * MOST_A_TICK, seconds=1.0)
+    assert max(len(plans) for plans in network.asked) == MOST_A_TICK
+    assert max(len(frame.flagged(FrameFlag.FALLBACK)) for frame in frames) == MOST_A_TICK
