@@ -185,9 +185,11 @@ def _slopes(normals: Floats) -> Floats:
 
 def _correct(state: Characters, row: int, correction: RootCorrection, scale: float) -> None:
     root = correction.root
-    position = np.asarray(root.position, np.float64) / scale
+    # in float32, as places come over the wire: in process the same frames
+    position = np.asarray(root.position, np.float32).astype(np.float64) / scale
+    yaw = float(np.float32(root.yaw))
     if correction.mode is CorrectionMode.TELEPORT:
-        place(state, np.array([row]), position[None], np.array([root.yaw]))
+        place(state, np.array([row]), position[None], np.array([yaw]))
     else:
         state.correction[row, :3] = position - state.root_position[row]
-        state.correction[row, 3] = wrap_angle(np.asarray(root.yaw - state.root_yaw[row]))
+        state.correction[row, 3] = wrap_angle(np.asarray(yaw - state.root_yaw[row]))

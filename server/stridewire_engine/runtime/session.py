@@ -70,8 +70,10 @@ class Session:
         rows = self.crowd.add(len(specs))
         state = self.crowd.state
         scales = np.array([self._output.scale(spec.height_m) for spec in specs])
-        positions = np.array([spec.root.position for spec in specs]) / scales[:, None]
-        controls.place(state, rows, positions, np.array([spec.root.yaw for spec in specs]))
+        # in float32, as places come over the wire: in process the same frames
+        positions = np.array([spec.root.position for spec in specs], np.float32) / scales[:, None]
+        yaws = np.array([spec.root.yaw for spec in specs], np.float32)
+        controls.place(state, rows, positions, yaws)
         for row, spec in zip(rows, specs, strict=True):
             self._set(int(row), spec, _UPDATABLE)
         # characters that search at different times share the work evenly among the ticks

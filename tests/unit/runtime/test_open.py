@@ -119,13 +119,14 @@ def test_two_libraries_need_two_names(small_library: Library) -> None:
         Runtime([])
 
 
-def test_sizes_count_as_they_come_over_the_wire(runtime: Runtime) -> None:
-    """A rig and a height, and the float32 that a wire makes of them, give the very same poses."""
+def test_places_and_sizes_count_as_they_come_over_the_wire(runtime: Runtime) -> None:
+    """A rig, a height and a root, and the float32 of them that a wire carries: the same poses."""
     given = REFERENCE.scaled(0.9)
     sent = replace(given, offsets=given.offsets.astype(np.float32))
     frames = []
-    for rig, height in ((given, 1.2), (sent, float(np.float32(1.2)))):
-        spec = CharacterSpec(1, GroundPose((49.0, 0.0, 0.0), 4.0), height)
+    for rig, kind in ((given, float), (sent, np.float32)):
+        root = GroundPose((float(kind(49.3)), float(kind(0.4619)), 0.0), float(kind(4.1)))
+        spec = CharacterSpec(1, root, float(kind(1.2)))
         session = runtime.open(opening(1, characters=[spec], output_skeleton=rig))
         frames.append([one(runtime, session, Step(i + 1, 1 / 60))[0] for i in range(4)])
     for a, b in zip(*frames, strict=True):
