@@ -146,7 +146,7 @@ def begin(matcher: Matcher, cell: Cell, wanted: Wanted, settings: TickSettings) 
     heading = np.arctan2(wanted.velocity[0, :, 0], wanted.velocity[0, :, 1])
     heading = np.where(np.isnan(wanted.facing[0]), heading, wanted.facing[0])
     for angle in (state.root_yaw, state.sim_yaw, state.goal_yaw):
-        angle[:] = heading
+        angle[:] = heading.astype(np.float32)  # as a session places its characters
     return state
 
 
