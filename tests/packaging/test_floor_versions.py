@@ -9,7 +9,7 @@ import pytest
 
 from source_imports import ROOT
 
-INTEGRATION = ("one_interface", "bad_input", "blend", "websocket", "play", "library_commands")
+INTEGRATION = ("one_interface", "bad_input", "blend", "websocket", "play", "stitch_command")
 
 CORE = (
     "tests/unit/motion",
