@@ -1,6 +1,5 @@
 """The server under test, in a process of its own, and what it uses up."""
 
-import subprocess
 import threading
 import time
 from collections.abc import Iterator, Sequence
@@ -81,8 +80,4 @@ def served(libraries: Sequence[Path]) -> Iterator[Served]:
         UnavailableError: If the server ended before it was ready.
     """
     with server_process(*libraries) as (address, process):
-        yield Served(address, _watch(process))
-
-
-def _watch(process: "subprocess.Popen[str]") -> psutil.Process:
-    return psutil.Process(process.pid)
+        yield Served(address, psutil.Process(process.pid))

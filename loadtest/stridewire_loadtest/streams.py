@@ -168,9 +168,8 @@ class DrivenStream:
         tally.note(now - begin - (step - 1) * FRAME_S, int((step - plan.warmup) * FRAME_S))
         tally.controls.record_value(max(1, round(1e6 * (now - self._sent[step]))))
         tally.characters_frames += plan.characters
-        elapsed = {timing.stage: timing.elapsed_ms for timing in frame.timings}
-        tally.stages_ms.update(elapsed)
-        tally.ticks.record_value(max(1, round(1e3 * sum(elapsed.values()))))
+        elapsed_ms = sum(timing.elapsed_ms for timing in frame.timings)
+        tally.ticks.record_value(max(1, round(1e3 * elapsed_ms)))
         for event in frame.events:
             if event.HasField("transition"):
                 started = event.transition.reason == pb.TRANSITION_REASON_START

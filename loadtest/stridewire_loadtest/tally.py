@@ -46,8 +46,6 @@ class Tally:
     ticks: Any = field(default_factory=histogram)
     """What the server says that a tick took."""
     queries: Any = field(default_factory=histogram)
-    stages_ms: Counter[str] = field(default_factory=Counter)
-    """Sums over frames, as the server told them."""
     poses: dict[int, list[bytes]] = field(default_factory=dict)
     """Hashes of the poses of all characters at some steps."""
     examples: list[str] = field(default_factory=list)
@@ -81,7 +79,6 @@ class Tally:
             setattr(self, name, getattr(self, name) + getattr(other, name))
         self.counts.update(other.counts)
         self.late_by_second.update(other.late_by_second)
-        self.stages_ms.update(other.stages_ms)
         for name in ("frames", "controls", "sending", "ticks", "queries"):
             getattr(self, name).add(getattr(other, name))
         for step, hashes in other.poses.items():
