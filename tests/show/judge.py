@@ -170,15 +170,12 @@ def naive() -> Iterator[Point]:
             "jump_pct", "jerk_ratio", "truth_error_cm", "following_error_m", "transitions_per_s",
         ):  # fmt: skip
             ours, theirs = stance.value(figure), naive.value(figure)
+            what = f"{figure} beside the naive row, {name}"
             text = f"{ours:.3f}, naive {theirs:.3f}"
             if ours > theirs and figure in REASONS:
-                text += f": {REASONS[figure]}"
-            yield Point(
-                f"{figure} beside the naive row, {name}",
-                text,
-                "better, or the reason",
-                ours <= theirs or figure in REASONS,
-            )
+                yield Point(what, f"{text}: {REASONS[figure]}")
+            else:
+                yield Point(what, text, "better, or the reason", ours <= theirs)
 
 
 def responses() -> Iterator[Point]:
