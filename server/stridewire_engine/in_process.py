@@ -117,7 +117,7 @@ class InProcessStream:
         """Return the next message, made now where it is due; None when the session was closed."""
         if not self._inbox and not self._closed:
             self._next = max(self._next + self._interval, time.monotonic() - self._interval)
-            self._advance(self._session.held_step(self._interval))
+            self._advance(self._interval)
         return self._inbox.popleft() if self._inbox else None
 
     def close(self) -> None:
@@ -125,7 +125,7 @@ class InProcessStream:
         self._closed = True
         self._runtime.close(self._session)
 
-    def _advance(self, step: Step) -> None:
+    def _advance(self, step: Step | float) -> None:
         ((frame, error),) = self._runtime.advance([(self._session, step)])
         self._report(error)  # before its frame, as a server sends it
         self._inbox.append(frame)

@@ -21,7 +21,7 @@ Advanced = tuple[Frame, StreamError | None]
 @dataclass(frozen=True)
 class _Due:
     session: Session
-    step: Step
+    step: Step | float
     answer: asyncio.Future[Advanced]
 
 
@@ -48,8 +48,8 @@ class Ticker:
         """Close a session after what was asked of it before; returns at once."""
         self._thread.submit(self.runtime.close, session)
 
-    async def advance(self, session: Session, step: Step) -> Advanced:
-        """Advance a session in the next tick."""
+    async def advance(self, session: Session, step: Step | float) -> Advanced:
+        """Advance a session in the next tick, by a step or by seconds."""
         answer: asyncio.Future[Advanced] = asyncio.get_running_loop().create_future()
         self._due.append(_Due(session, step, answer))
         if self._ticking is None:

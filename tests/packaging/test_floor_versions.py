@@ -1,5 +1,6 @@
 """The lower bounds of the dependencies are true: the suite's core runs on just those versions."""
 
+import os
 import subprocess
 import sys
 import tomllib
@@ -42,6 +43,7 @@ def test_the_core_passes_on_the_oldest_versions(tmp_path: Path) -> None:
     ran = subprocess.run(
         [str(python), "-m", "pytest", "-p", "no:cacheprovider", "-x", *tests],
         cwd=ROOT,
+        env={**os.environ, "STRIDEWIRE_DATA": ""},  # the capture says nothing of versions
         capture_output=True,
         text=True,
     )

@@ -176,20 +176,22 @@ class Runtime:
             recording.close()
 
     def advance(
-        self, due: Sequence[tuple[Session, Step]]
+        self, due: Sequence[tuple[Session, Step | float]]
     ) -> list[tuple[Frame, StreamError | None]]:
         """Advance sessions by one step each, all of one library in one tick.
 
         Args:
-            due: Sessions, each at most once, and their steps.
+            due: Sessions, each at most once, and their steps; or seconds, to advance under the
+                controls as they are by then.
 
         Returns:
             A frame, and what was wrong with the step, for each session in order.
         """
-        for session, step in due:
+        steps = [(s, s.held_step(step) if isinstance(step, float) else step) for s, step in due]
+        for session, step in steps:
             if recording := self._recordings.get(session.id):
                 recording.advance(step)
-        begun = [_Due(session, *session.begin_tick(step)) for session, step in due]
+        begun = [_Due(session, *session.begin_tick(step)) for session, step in steps]
         frames: dict[str, Frame] = {}
         for crowd in {id(d.session.crowd): d.session.crowd for d in begun}.values():
             mine = [d for d in begun if d.session.crowd is crowd]

@@ -92,7 +92,7 @@ class AnimateStream:
         error = None
         if not step.ack_only:
             if self._settings.pacing is Pacing.CLIENT:
-                await self._advance(step, violations)
+                self._report(step.step, violations, await self._advance(step))
                 return
             error = await self._ticker.call(self._runtime.control, self._session, step)
         self._report(step.step, violations, error)
@@ -104,13 +104,13 @@ class AnimateStream:
         schedule = Schedule(self._settings.rate_hz, loop.time())
         while True:
             await asyncio.sleep(schedule.next_due(loop.time()) - loop.time())
-            await self._advance(self._session.held_step(period), ())
+            await self._advance(period)
 
-    async def _advance(self, step: Step, violations: tuple[Violation, ...]) -> None:
+    async def _advance(self, step: Step | float) -> StreamError | None:
         advanced: Advanced = await self._ticker.advance(self._session, step)
         frame, error = advanced
-        self._report(step.step, violations, error)
         self._outbox.offer(frame)
+        return error
 
     def _report(
         self, step: int, violations: tuple[Violation, ...], error: StreamError | None = None

@@ -24,8 +24,8 @@ def opening(count: int, **changes: object) -> Open:
     return Open(**{"characters": specs, "detail": Detail.COSTS, "seed": 7, **changes})  # type: ignore[arg-type]
 
 
-def one(runtime: Runtime, session: Session, step: Step) -> tuple[Frame, list[str]]:
-    """Advance by a step and return the frame and the fields that were refused."""
+def one(runtime: Runtime, session: Session, step: Step | float) -> tuple[Frame, list[str]]:
+    """Advance by a step, or by seconds, and return the frame and the fields that were refused."""
     ((frame, error),) = runtime.advance([(session, step)])
     return frame, [violation.field for violation in error.violations] if error else []
 
