@@ -19,7 +19,8 @@ def test_a_control_given_while_a_frame_waits_is_kept(small_library: Library) -> 
 
 async def _applied_steps(ticker: Ticker) -> list[int]:
     """Ask for a frame, give a control while it waits for a tick, and ask for another frame."""
-    busy, paced = [await ticker.open(Open([CharacterSpec(0)], pacing=Pacing.SERVER)) for _ in range(2)]
+    opening = Open([CharacterSpec(0)], pacing=Pacing.SERVER)
+    busy, paced = [await ticker.open(opening) for _ in range(2)]
     released = threading.Event()
     blocked = asyncio.create_task(ticker.call(released.wait, 10.0))
     first = asyncio.create_task(ticker.advance(busy, DT))
