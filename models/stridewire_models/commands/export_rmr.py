@@ -21,13 +21,12 @@ from stridewire_models.commands.sums import enter
 def rmr(run: Path, out: Path | None, as_json: bool) -> None:
     """Export the best weights of a run of `stridewire train rmr` as ONNX (needs torch, onnx)."""
     try:
-        from stridewire_models.rmr.export import read_run, to_onnx
+        from stridewire_models.rmr.export import exported
     except ModuleNotFoundError as error:
         raise click.ClickException(
             f"exporting needs {error.name}: pip install 'stridewire[server,train]'"
         ) from error
-    network, told = read_run(run)
-    content = to_onnx(network, int(str(told["seed"])))
+    content, told = exported(run)
     path = out or run / "rmr.onnx"
     path.write_bytes(content)
     digest = hashlib.sha256(content).hexdigest()

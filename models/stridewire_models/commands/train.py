@@ -9,6 +9,7 @@ import click
 from stridewire.motion.mirror import mirror_clip
 from stridewire_models.commands.train_blend import blend
 from stridewire_models.commands.train_rmr import rmr
+from stridewire_models.commands.train_rmr_tables import rmr_tables
 from stridewire_models.gait.fitting import fit
 from stridewire_models.gait.measuring import Standing, Steps, measure_standing, measure_steps
 from stridewire_models.gait.takes import Take, load_takes, take_files
@@ -21,6 +22,7 @@ def train() -> None:
 
 train.add_command(blend)
 train.add_command(rmr)
+train.add_command(rmr_tables)
 
 
 @train.command()

@@ -2,7 +2,6 @@
 
 import json
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -12,6 +11,8 @@ from stridewire_engine.networks.rmr.takes import Takes
 from stridewire_models.commands.split_import import clips_of
 
 _LOOK_EVERY = 200
+VARIANTS = ("steps", "paper")
+CELLS = ("bgru", "blstm", "gru", "lstm")
 
 
 @click.command()
@@ -28,6 +29,14 @@ _LOOK_EVERY = 200
     type=click.Path(file_okay=False, path_type=Path),
     help="Folder of the run; an unfinished one goes on where its checkpoint is.",
 )
+@click.option(
+    "--variant", type=click.Choice(VARIANTS), default=VARIANTS[0], show_default=True,
+    help="Guidance of feet, which ships, or whole poses as in the paper.",
+)  # fmt: skip
+@click.option(
+    "--cell", type=click.Choice(CELLS), default=CELLS[0], show_default=True,
+    help="Of the recurrent layers of the variant paper.",
+)  # fmt: skip
 @click.option("--seed", default=0, show_default=True, help="Seed of weights and pairs.")
 @click.option("--steps", type=click.IntRange(1), help="Steps instead of the recipe's.")
 @click.option(
@@ -35,36 +44,44 @@ _LOOK_EVERY = 200
     help="Share of the training clips to use.",
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def rmr(data: Path, out: Path, seed: int, steps: int | None, part: float, as_json: bool) -> None:
+def rmr(
+    data: Path,
+    out: Path,
+    variant: str,
+    cell: str,
+    seed: int,
+    steps: int | None,
+    part: float,
+    as_json: bool,
+) -> None:
     """Train the refiner on one thread (needs torch)."""
     try:
         import torch
 
-        from stridewire_models.rmr.recipes import RECIPES
-        from stridewire_models.rmr.training import Run
+        from stridewire_models.rmr.variants import run_of
     except ModuleNotFoundError as error:
         raise click.ClickException(
             f"training needs {error.name}: pip install 'stridewire[server,train]'"
         ) from error
+    if variant != "paper" and cell != CELLS[0]:
+        raise click.BadParameter("only the variant paper has a choice", param_hint="--cell")
     torch.set_num_threads(1)
-    recipe = RECIPES["steps"]
-    if steps is not None:
-        recipe = replace(recipe, steps=steps)
     began = time.monotonic()
     clips = clips_of(data, "train", as_json)
     kept = np.sort(np.random.default_rng(0).permutation(len(clips))[: round(part * len(clips))])
     train = Takes.of(clips[i] for i in kept)
-    run = Run(out, recipe, train, Takes.of(clips_of(data, "validation", as_json)), seed)
+    validation = Takes.of(clips_of(data, "validation", as_json))
+    run = run_of(out, variant, cell, steps, train, validation, seed)
     # the setting is the thread's, so that it must not outlive the training
     torch.set_flush_denormal(True)
     try:
-        with click.progressbar(length=recipe.steps, label="training", hidden=as_json) as bar:
+        with click.progressbar(length=run.recipe.steps, label="training", hidden=as_json) as bar:
             run.train(bar.update, _LOOK_EVERY)
     finally:
         torch.set_flush_denormal(False)
     facts = {
         "out": str(out),
-        "variant": recipe.variant,
+        "variant": variant,
         "seed": seed,
         "clips": len(kept),
         "steps": run.progress.step,

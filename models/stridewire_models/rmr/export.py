@@ -13,6 +13,7 @@ from stridewire_engine.networks.rmr.features import INPUTS
 from stridewire_engine.networks.rmr.plans import WINDOW
 from stridewire_engine.networks.rmr.refiner import facts
 from stridewire_models.rmr.networks import Steps
+from stridewire_models.rmr.paper_export import paper_to_onnx, read_paper_run
 from stridewire_models.rmr.training import BEST, CONFIGURATION
 
 _OPSET = 17
@@ -25,21 +26,29 @@ class RunError(ValueError):
     """A run's folder holds nothing to export; the message says what to do."""
 
 
+def exported(folder: Path) -> tuple[bytes, Mapping[str, object]]:
+    """Return the ONNX file of a run's best weights, of whichever variant, and its configuration.
+
+    Raises:
+        RunError: If it has none.
+    """
+    told = _configuration(folder)
+    if told["variant"] == "paper":
+        paper, told = read_paper_run(folder)
+        return paper_to_onnx(paper, told), told
+    network, told = read_run(folder)
+    return to_onnx(network, int(str(told["seed"]))), told
+
+
 def read_run(folder: Path) -> tuple[Steps, Mapping[str, object]]:
     """Return a run's best weights and its configuration.
 
     Raises:
         RunError: If it has none.
     """
-    configuration, best = folder / CONFIGURATION, folder / BEST
-    if not configuration.is_file() or not best.is_file():
-        raise RunError(
-            f"{folder} holds no {CONFIGURATION} and {BEST}; give the folder of "
-            "`stridewire train rmr --out`"
-        )
-    told: Mapping[str, object] = json.loads(configuration.read_text())
+    told = _configuration(folder)
     network = Steps()
-    network.load_state_dict(torch.load(best))
+    network.load_state_dict(torch.load(folder / BEST))
     network.eval()
     return network, told
 
@@ -70,3 +79,14 @@ def to_onnx(network: Steps, seed: int) -> bytes:
     onnx.helper.set_model_props(model, facts("steps", seed=str(seed), furthest=str(FURTHEST)))
     data: bytes = model.SerializeToString()
     return data
+
+
+def _configuration(folder: Path) -> Mapping[str, object]:
+    configuration, best = folder / CONFIGURATION, folder / BEST
+    if not configuration.is_file() or not best.is_file():
+        raise RunError(
+            f"{folder} holds no {CONFIGURATION} and {BEST}; give the folder of "
+            "`stridewire train rmr --out`"
+        )
+    told: Mapping[str, object] = json.loads(configuration.read_text())
+    return told

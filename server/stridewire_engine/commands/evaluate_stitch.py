@@ -8,12 +8,12 @@ from typing import Any
 import click
 
 from stridewire import __version__
-from stridewire_engine.evaluation.seam_methods import Method, plain_methods, refined
+from stridewire_engine.evaluation.seam_methods import plain_methods
 from stridewire_engine.evaluation.split_clips import import_clips, split_files
 from stridewire_engine.evaluation.stitch_figures import PATHS, Figures, Judge
+from stridewire_engine.evaluation.stitch_networks import Measured, networks
 from stridewire_engine.evaluation.stitch_table import rows
 from stridewire_engine.networks.onnx_model import ModelError
-from stridewire_engine.networks.rmr import load_refiner, shipped_refiner
 from stridewire_engine.networks.rmr.takes import Takes
 
 _COLUMNS = (
@@ -47,7 +47,7 @@ _COLUMNS = (
     help="Frames from one window to the next.",
 )  # fmt: skip
 @click.option(
-    "--network", "networks", multiple=True, metavar="NAME=FILE",
+    "--network", "named", multiple=True, metavar="NAME=FILE",
     help="Also measure a network exported by `stridewire export rmr`; may be repeated.",
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
@@ -57,11 +57,12 @@ def stitch(
     split: str,
     path: str,
     stride: int,
-    networks: tuple[str, ...],
+    named: tuple[str, ...],
     as_json: bool,
 ) -> None:
     """Measure what hides seams of clips that follow a captured take's path."""
-    methods = {**plain_methods(), **_refiners(networks)}
+    trained = _networks(named)
+    methods = {**plain_methods(), **{label: each.method for label, each in trained.items()}}
     files = split_files(data, name, split)
     with click.progressbar(
         import_clips(files), length=len(files), label=f"importing {split}", hidden=as_json
@@ -74,6 +75,9 @@ def stitch(
             measured[label] = judge.measure(method, bar.update)
     about = {"data": name, "split": split, "path": path, "pairs": len(judge.pairs)}
     table = list(rows(about, measured))
+    for row in table:
+        if row["method"] in trained:
+            row["budget_min"] = trained[row["method"]].budget_min
     settings = {
         "version": __version__,
         "takes": len(judge.clips),
@@ -86,21 +90,21 @@ def stitch(
         _print(table)
 
 
-def _refiners(networks: tuple[str, ...]) -> dict[str, Method]:
-    """Return the refiner that ships, and others by name."""
+def _networks(named: tuple[str, ...]) -> dict[str, Measured]:
+    """Return the networks that ship, and others by name."""
+    others: dict[str, Path] = {}
+    for text in named:
+        label, _, path = text.partition("=")
+        if not label or not path:
+            raise click.BadParameter(
+                f"{text!r}; expected NAME=FILE such as refine-1=runs/1/rmr.onnx",
+                param_hint="--network",
+            )
+        others[label] = Path(path)
     try:
-        out = {"refine": refined(shipped_refiner())}
-        for text in networks:
-            label, _, path = text.partition("=")
-            if not label or not path:
-                raise click.BadParameter(
-                    f"{text!r}; expected NAME=FILE such as refine-1=runs/1/rmr.onnx",
-                    param_hint="--network",
-                )
-            out[label] = refined(load_refiner(Path(path)))
+        return networks(others)
     except ModelError as error:
         raise click.ClickException(str(error)) from error
-    return out
 
 
 def _print(table: list[dict[str, Any]]) -> None:

@@ -91,7 +91,7 @@ class Judge:
         since = np.arange(after.shape[1]) - pairs.seam
         soon = after & (since < _AFTER_SEAM)
         jumps = metrics.velocity_step(in_time, FRAME_RATE) > self._steps
-        error = (_written(made) - _written(true)) ** 2
+        error = (written(made) - written(true)) ** 2
         return {
             "sliding_a_cm_s": _sum(100.0 * _back(near), after),
             "sliding_c_cm_s": _sum(100.0 * _back(slid), after),
@@ -163,7 +163,7 @@ def _sum(values: Floats, counted: Flags) -> tuple[Floats, Floats]:
     return np.where(good, values, 0.0).sum(axis=axes), good.sum(axis=axes).astype(np.float64)
 
 
-def _written(poses: Poses) -> Floats:
+def written(poses: Poses) -> Floats:
     """Return hips and two axes of each rotation `(N, T, 135)`."""
     six = to_six(poses.rotations)
     return np.concatenate([poses.hips, six.reshape(*six.shape[:2], -1)], axis=-1)

@@ -28,9 +28,10 @@ import torch
 from stridewire_models.rmr.export import RunError, read_run, to_onnx
 from stridewire_models.rmr.losses import guide
 from stridewire_models.rmr.networks import Steps
-from stridewire_models.rmr.recipes import RECIPES, Recipe
+from stridewire_models.rmr.recipes import STEPS, StepsRecipe
 from stridewire_models.rmr.supply import live_tensors, tensors
-from stridewire_models.rmr.training import CHECKPOINT, Run
+from stridewire_models.rmr.training import CHECKPOINT
+from stridewire_models.rmr.variants import steps_run
 
 PARITY = 1e-4
 """Largest difference of ONNX and torch, in their own numbers."""
@@ -48,10 +49,10 @@ def takes() -> Takes:
     return Takes.of(clip for clip in synthetic_clips() if len(clip) < 400)
 
 
-def recipe(steps: int) -> Recipe:
+def recipe(steps: int) -> StepsRecipe:
     """Return a short recipe; few steps move a mean of weights too little."""
     return replace(
-        RECIPES["steps"],
+        STEPS,
         steps=steps,
         batch=12,
         learning_rate=5e-3,
@@ -115,15 +116,15 @@ def test_onnx_agrees_with_torch(takes: Takes, plans: int, frames: int) -> None:
 @pytest.mark.timeout(600)
 def test_a_run_learns_and_goes_on(takes: Takes, tmp_path: Path) -> None:
     """The loss falls; a run that stopped half way ends where one that did not stop ends."""
-    whole = Run(tmp_path / "whole", recipe(40), takes, takes, 0)
+    whole = steps_run(tmp_path / "whole", recipe(40), takes, takes, 0)
     whole.train(lambda steps: None, 10)
     curve = [row["validation"] for row in whole.progress.curve]
     assert curve[-1] < 0.98 * curve[0]
-    half = Run(tmp_path / "half", recipe(40), takes, takes, 0)
+    half = steps_run(tmp_path / "half", recipe(40), takes, takes, 0)
     half.recipe = replace(half.recipe, steps=20)
     half.train(lambda steps: None, 10)
     assert (tmp_path / "half" / CHECKPOINT).is_file()
-    rest = Run(tmp_path / "half", recipe(40), takes, takes, 0)
+    rest = steps_run(tmp_path / "half", recipe(40), takes, takes, 0)
     assert rest.progress.step == 20
     rest.train(lambda steps: None, 10)
     assert read_run(tmp_path / "half")[1]["seed"] == 0
