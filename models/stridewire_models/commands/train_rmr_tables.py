@@ -29,11 +29,17 @@ from stridewire_models.commands.split_import import clips_of
     type=click.Path(dir_okay=False, path_type=Path),
     help="JSON file of rows, written as each run ends.",
 )
-def rmr_tables(data: Path, out: Path, results: Path) -> None:
+@click.option(
+    "--picture",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="PNG of how far roots stray.",
+)
+def rmr_tables(data: Path, out: Path, results: Path, picture: Path | None) -> None:
     """Train the paper's refiner with each cell, T_begin and loss, on one thread (needs torch)."""
     try:
         import torch
 
+        from stridewire_models.rmr.paper_drift import draw_drift, drift_rows
         from stridewire_models.rmr.paper_tables import TRAININGS, is_done, row, train
         from stridewire_models.rmr.paper_task import PaperData
     except ModuleNotFoundError as error:
@@ -61,6 +67,10 @@ def rmr_tables(data: Path, out: Path, results: Path) -> None:
             results.write_text(_table(about, rows))
     finally:
         torch.set_flush_denormal(False)
+    drift = list(drift_rows(out, pairs.x, Takes.of(clips_of(data, "test", False))))
+    results.write_text(_table(about, [*rows, *drift]))
+    if picture is not None:
+        draw_drift(drift, picture)
 
 
 def _table(about: dict[str, object], rows: list[dict[str, object]]) -> str:

@@ -126,7 +126,7 @@ class Run:
             self.progress.best = figures["validation"]
             torch.save(network.state_dict(), self.folder / BEST)
         now = {"step": self.progress.step, "cpu_s": round(self.progress.cpu_s, 1)}
-        now |= {name: round(value, 5) for name, value in figures.items()}
+        now |= {name: float(f"{value:.6g}") for name, value in figures.items()}
         self.progress.curve.append(now)
         (self.folder / CURVE).write_text(json.dumps(self.progress.curve) + "\n")
 
