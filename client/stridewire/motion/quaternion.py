@@ -7,6 +7,7 @@ its logarithm.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -34,16 +35,20 @@ def multiply(a: Quaternions, b: Quaternions) -> Quaternions:
         a: `(..., 4)`.
         b: `(..., 4)`, broadcast against `a`.
     """
-    # by index: numpy.moveaxis takes longer than the product of a few
-    aw, ax, ay, az = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
-    bw, bx, by, bz = b[..., 0], b[..., 1], b[..., 2], b[..., 3]
-    w = aw * bw - ax * bx - ay * by - az * bz
-    out = np.empty((*w.shape, 4), w.dtype)
-    out[..., 0] = w
-    out[..., 1] = aw * bx + ax * bw + ay * bz - az * by
-    out[..., 2] = aw * by - ax * bz + ay * bw + az * bx
-    out[..., 3] = aw * bz + ax * by - ay * bx + az * bw
-    return out
+    # q = c + d j with complex c = w + xi, d = y + zi: 4 complex products are a third of the passes
+    first, second = _complex(a), _complex(b)
+    c, d, e, f = first[..., 0], first[..., 1], second[..., 0], second[..., 1]
+    head = c * e - d * f.conj()
+    out = np.empty((*head.shape, 2), head.dtype)
+    out[..., 0] = head
+    np.add(c * f, d * e.conj(), out=out[..., 1])
+    return np.asarray(out.view(head.real.dtype))
+
+
+def _complex(q: Quaternions) -> Any:
+    """View quaternions as pairs of complex numbers `(..., 2)`; copies only where it has to."""
+    kind = np.complex128 if q.dtype == np.float64 else np.complex64
+    return np.ascontiguousarray(q).view(kind)
 
 
 def conjugate(q: Quaternions) -> Quaternions:
@@ -70,6 +75,14 @@ def cross(a: Vectors, b: Vectors) -> Vectors:
     out[..., 1] = az * bx - ax * bz
     out[..., 2] = ax * by - ay * bx
     return out
+
+
+def dot(a: Floats, b: Floats) -> Floats:
+    """Return the inner product over the last axis; faster than numpy's sum for 3 or 4 numbers."""
+    total = a[..., 0] * b[..., 0]
+    for i in range(1, a.shape[-1]):
+        total += a[..., i] * b[..., i]
+    return np.asarray(total)
 
 
 def normalize(q: Quaternions) -> Quaternions:
@@ -104,7 +117,7 @@ def unroll(q: Quaternions) -> Quaternions:
 
 def from_scaled_axis(v: Vectors) -> Quaternions:
     """Return the exponential of rotation vectors `(..., 3)` in radians."""
-    angle = np.sqrt(np.sum(v * v, axis=-1, keepdims=True))
+    angle = np.sqrt(dot(v, v))[..., None]
     half = 0.5 * angle
     safe = np.where(angle < _SMALL_ANGLE, 1.0, angle)
     scale = np.where(angle < _SMALL_ANGLE, 0.5, np.sin(half) / safe)
@@ -115,7 +128,7 @@ def to_scaled_axis(q: Quaternions) -> Vectors:
     """Return the logarithm: rotation vectors `(..., 3)` of at most pi radians."""
     q = absolute(q)
     v = q[..., 1:]
-    sine = np.sqrt(np.sum(v * v, axis=-1, keepdims=True))
+    sine = np.sqrt(dot(v, v))[..., None]
     angle = 2.0 * np.arctan2(sine, q[..., :1])
     safe = np.where(sine < _SMALL_ANGLE, 1.0, sine)
     return (v * np.where(sine < _SMALL_ANGLE, 2.0, angle / safe)).astype(q.dtype)
@@ -130,7 +143,7 @@ def scaled_axis_to_velocity(v: Vectors, rate: Vectors) -> Vectors:
         v: `(..., 3)` rotation vectors of angle a, radians.
         rate: `(..., 3)` their rates of change, rad/s.
     """
-    angle = np.sqrt(np.sum(v * v, axis=-1, keepdims=True))
+    angle = np.sqrt(dot(v, v))[..., None]
     safe = np.maximum(angle, 1e-2)
     first = np.where(angle < 1e-2, 0.5, (1.0 - np.cos(safe)) / safe**2)
     second = np.where(angle < 1e-2, 1.0 / 6.0, (safe - np.sin(safe)) / safe**3)
@@ -147,7 +160,7 @@ def scaled_axis_from_velocity(v: Vectors, velocity: Vectors) -> Vectors:
         v: `(..., 3)` rotation vectors of angle a below a full turn, radians.
         velocity: `(..., 3)` angular velocities, rad/s.
     """
-    angle = np.sqrt(np.sum(v * v, axis=-1, keepdims=True))
+    angle = np.sqrt(dot(v, v))[..., None]
     safe = np.maximum(angle, 1e-1)
     exact = 1.0 / safe**2 - 1.0 / (2.0 * safe * np.tan(0.5 * safe))
     once = cross(v, velocity)
@@ -190,9 +203,9 @@ def between(a: Vectors, b: Vectors) -> Quaternions:
         a: `(..., 3)`, any length but zero.
         b: `(..., 3)`, any length but zero; for opposite directions the axis is arbitrary.
     """
-    a = a / np.sqrt(np.sum(a * a, axis=-1, keepdims=True))
-    b = b / np.sqrt(np.sum(b * b, axis=-1, keepdims=True))
-    w = 1.0 + np.sum(a * b, axis=-1, keepdims=True)
+    a = a / np.sqrt(dot(a, a))[..., None]
+    b = b / np.sqrt(dot(b, b))[..., None]
+    w = 1.0 + dot(a, b)[..., None]
     other = np.where(np.abs(a[..., :1]) < 0.9, np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
     opposite = w < 1e-7
     axis = np.where(opposite, cross(a, other.astype(a.dtype)), cross(a, b))
@@ -201,10 +214,11 @@ def between(a: Vectors, b: Vectors) -> Quaternions:
 
 def nlerp(a: Quaternions, b: Quaternions, weight: Floats) -> Quaternions:
     """Blend on the short side and normalise; a weight `(...)` of 0 gives `a`, 1 gives `b`."""
-    weight = weight[..., None]
-    b = np.where(np.sum(a * b, axis=-1, keepdims=True) < 0.0, -b, b)
-    mix = a + weight * (b - a)
-    return np.asarray(mix / np.sqrt(np.sum(mix * mix, axis=-1, keepdims=True)))
+    other = np.copysign(weight, weight * dot(a, b))
+    mix = a * (1.0 - weight)[..., None]
+    mix += b * other[..., None]
+    mix /= np.sqrt(dot(mix, mix))[..., None]
+    return mix
 
 
 def slerp(a: Quaternions, b: Quaternions, weight: Floats) -> Quaternions:

@@ -6,7 +6,7 @@ import numpy as np
 
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire_engine.runtime.response import NEUTRAL
-from stridewire_engine.stitchers.columns import allocate, column
+from stridewire_engine.stitchers.columns import Columns, allocate, column
 
 MAX_TRAJECTORY_POINTS = 32
 """Most points of a trajectory that a caller gives."""
@@ -21,7 +21,7 @@ PAST_FRAMES, GUIDED_FRAMES = 8, 52
 
 
 @dataclass
-class Characters:
+class Characters(Columns):
     """Arrays of N rows. World positions, angles and times are float64, since they are long sums."""
 
     # what the caller wants
@@ -193,15 +193,6 @@ class Characters:
     def fresh(self, rows: int) -> "Characters":
         """Return fresh rows of the same shapes."""
         return self.allocate(rows, self.offset_rotations.shape[1], self.weights.shape[1])
-
-    def take(self, rows: slice | Indices) -> "Characters":
-        """Return some rows: views for a slice, copies for indices."""
-        return Characters(**{name: array[rows] for name, array in vars(self).items()})
-
-    def put(self, rows: slice | Indices, part: "Characters") -> None:
-        """Write rows back."""
-        for name, array in vars(self).items():
-            array[rows] = getattr(part, name)
 
     def append(self, more: "Characters") -> "Characters":
         """Return these rows and then others."""

@@ -159,7 +159,7 @@ def consider(
     """Search for the characters that have a reason, and say who is to jump; nothing is changed."""
     library = matcher.library
     searching = np.flatnonzero(reason)
-    rows = state.take(searching)
+    rows = state.borrow(searching)
     why = reason[searching]
     starting = rows.clip < 0
     playing = sampling.moments(library, np.maximum(rows.clip, 0), rows.clip_time).nearest

@@ -64,7 +64,9 @@ def legs_ahead(
     motion = sampling.root_delta(library, now, then).reshape(-1, count, 3)
     faded = -np.expm1(-_LN2 * times / root_halflife) * (root_halflife / _LN2)
     motion += state.root_offset[:, None] * faded[:, None] + pull[:, None] * times[:, None]
-    hips, ankles, toes = (_move(_between(track, then), motion) for track in tracks)
+    turn = motion[..., 2, None]
+    sine, cosine = np.sin(turn), np.cos(turn)
+    hips, ankles, toes = (_move(_between(track, then), motion, sine, cosine) for track in tracks)
     contacts = library.contacts[then.nearest][:, 1::2].reshape(-1, count, 2)
     return LegsAhead(times, hips, ankles, toes, contacts)
 
@@ -74,10 +76,13 @@ def _between(track: Vectors, at: sampling.Moments) -> Vectors:
     return np.asarray(a + at.weight[:, None, None] * (b - a))
 
 
-def _move(local: Vectors, motion: Floats) -> Vectors:
+def _move(local: Vectors, motion: Floats, sine: Floats, cosine: Floats) -> Vectors:
     """Take points `(N, K, 2, 3)` under moved roots into the frame before the move."""
     local = local.reshape(*motion.shape[:2], 2, 3)
-    x, z, yaw = (part[..., None] for part in np.moveaxis(motion, -1, 0))
-    sine, cosine = np.sin(yaw), np.cos(yaw)
-    px, py, pz = np.moveaxis(local, -1, 0)
-    return np.stack([px * cosine + pz * sine + x, py + 0.0 * x, pz * cosine - px * sine + z], -1)
+    x, z = motion[..., 0, None], motion[..., 1, None]
+    px, pz = local[..., 0], local[..., 2]
+    out = np.empty(local.shape, motion.dtype)
+    out[..., 0] = px * cosine + pz * sine + x
+    out[..., 1] = local[..., 1]
+    out[..., 2] = pz * cosine - px * sine + z
+    return out

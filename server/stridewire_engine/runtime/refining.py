@@ -79,7 +79,7 @@ class Refining:
         known = known[:MOST_A_TICK]
         if not len(known):
             return
-        said = self._refiner.refine(self._plans(rows.take(known)))
+        said = self._refiner.refine(self._plans(rows.borrow(known)))
         near = said.distance <= self._refiner.furthest
         rows.fallback[known] = np.where(near, Fallback.NONE, Fallback.UNLIKE_TRAINING)
         chosen, coming = known[near], slice(PAST_FRAMES, None)
@@ -195,7 +195,7 @@ def guided(state: Characters) -> Flags:
 
 
 def guide(state: Characters, sample: Sample) -> Sample:
-    """Return the sample of characters that are all guided, with their guide.
+    """Return the sample with the guide of those who have one; what others are shown is the same.
 
     Args:
         state: N rows.
@@ -206,7 +206,8 @@ def guide(state: Characters, sample: Sample) -> Sample:
     told = Guide(
         now.planted[:, 0],
         turn_to_root(now.toe_offset[:, 0], yaw),
-        now.foot_turn[:, 0],
+        None,
+        guided(state),
     )
     ahead = sample.ahead
     if ahead is not None:
@@ -222,12 +223,13 @@ def _said(state: Characters, times: Floats, labels: Flags) -> Guide:
     """Return what the network said `(N, K, …)` of times ahead; it fades into the labels."""
     frame = _frame(state, times)
     x = np.clip((GUIDED_FRAMES - frame) / (_FADE_OUT + 1.0), 0.0, 1.0)
+    x *= (state.guide_frames > 0)[:, None]
     share = (x * x * (3.0 - 2.0 * x))[..., None]
     rows = np.arange(len(frame))[:, None]
     at = np.clip(frame, 0, GUIDED_FRAMES - 1)
     offset = share[..., None] * state.guide_offset[rows, at]
     planted = share * state.guide_planted[rows, at] + (1.0 - share) * labels
-    return Guide(planted, offset, 0.0 * offset)
+    return Guide(planted, offset, None)
 
 
 def _frame(state: Characters, times: Floats) -> Indices:

@@ -166,7 +166,7 @@ class Tick:
         before_lift = state.terrain[:, 0].copy()
         rows = contiguous(np.flatnonzero(state.has_ground))
         if isinstance(rows, slice) or len(rows):
-            told = state.take(rows)
+            told = state.borrow(rows)
             laid = ground.lay(told, self._legs, hips[rows], rotations[rows], dt[rows])
             hips[rows], rotations[rows] = laid.hips, laid.rotations
             state.put(rows, told)
@@ -199,7 +199,7 @@ class Tick:
     def _jump(self, state: Characters, jumps: Jumps) -> None:
         """Hand the jumping characters over to their stitchers and set them to their new moments."""
         library = self._matcher.library
-        rows = state.take(jumps.characters)
+        rows = state.borrow(jumps.characters)
         old = sampling.moments(library, np.maximum(jumps.from_clip, 0), jumps.from_time)
         new = sampling.moments(library, jumps.to_clip, jumps.to_time)
         rows.root_offset += sampling.root_velocity(library, old) * rows.pace[:, None]
@@ -216,7 +216,7 @@ class Tick:
         for index, stitcher in enumerate(STITCHERS):
             mine = np.flatnonzero(by == index)
             if len(mine):
-                part = offsets.take(mine)
+                part = offsets.borrow(mine)
                 stitcher.begin(part, source.take(mine), target.take(mine), roots.take(mine))
                 offsets.put(mine, part)
             if not stitcher.keeps_root_velocity:
@@ -241,7 +241,7 @@ class Tick:
         rows.fallback[...] = np.where(refines, refining.Fallback.NO_NETWORK, 0)
         mine = np.flatnonzero(refines)
         if len(mine) and self._refining is not None:
-            part = rows.take(mine)
+            part = rows.borrow(mine)
             self._refining.plan(part)
             rows.put(mine, part)
 
@@ -276,25 +276,22 @@ class Tick:
         passed = np.maximum(dt, 1e-6)[:, None]
         pull = (delta[:, [0, 2, 3]] - motion) / passed - state.root_offset
         small_dt = dt.astype(np.float32)
-        led = (state.stitched_by == _REFINE) & refining.guided(state)
-        crews = [(s, (state.stitched_by == i) & ~led, False) for i, s in enumerate(STITCHERS)]
-        crews.append((STITCHERS[_REFINE], led, True))
-        for stitcher, chosen, is_led in crews:
-            mine = contiguous(np.flatnonzero(chosen))
+        for index, stitcher in enumerate(STITCHERS):
+            mine = contiguous(np.flatnonzero(state.stitched_by == index))
             if not isinstance(mine, slice) and not len(mine):
                 continue
-            part, seen = offsets.take(mine), sample.take(mine)
+            part, seen = offsets.borrow(mine), sample.take(mine)
             if stitcher.looks_ahead:
                 times = np.array(stitcher.looks_ahead)
-                rows = state.take(mine)
+                rows = state.borrow(mine)
                 halflife = self._settings.root_halflife
                 seen = seen._replace(
                     ahead=legs_ahead(
                         rows, self._matcher.library, self._tracks, times, pull[mine], halflife
                     )
                 )
-            if is_led:
-                seen = refining.guide(state.take(mine), seen)
+                if index == _REFINE and refining.guided(rows).any():
+                    seen = refining.guide(rows, seen)
             hips[mine], rotations[mine] = stitcher.apply(part, seen, small_dt[mine])
             offsets.put(mine, part)
         return hips, rotations

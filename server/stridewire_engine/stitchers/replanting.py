@@ -47,6 +47,7 @@ def lift_feet(state: StitchState, sample: Sample, dt: Floats) -> Sample:
 
 def _may_step(state: StitchState, sample: Sample) -> Flags:
     assert sample.ahead is not None
-    stands = sample.contacts.all(axis=1) & sample.ahead.contacts.all(axis=(1, 2))
+    free = True if sample.guide is None else ~np.asarray(sample.guide.guided)
+    stands = free & sample.contacts.all(axis=1) & sample.ahead.contacts.all(axis=(1, 2))
     rests = (state.toe_step <= 0.0).all(axis=1) & (state.toe_swing < _AT_REST).all(axis=1)
     return np.asarray(stands & rests & (state.stitch_time > _WAIT_S))

@@ -75,7 +75,7 @@ class Stance:
         """Spring the body on, move the toes, bend the legs."""
         _decay_body(state, sample.legs, dt)
         hips, rotations = offsets.add(state, sample)
-        if sample.guide is None:
+        if sample.guide is None or sample.guide.guided is not None:
             sample = replanting.lift_feet(state, sample, dt)
         clip = leg_pose(sample.legs, sample.hips, sample.rotations)
         led = clip.toe if sample.guide is None else clip.toe + sample.guide.toe_offset
@@ -83,7 +83,7 @@ class Stance:
         toes = self._step(state, sample, target, dt)
         body = leg_pose(sample.legs, hips, rotations)
         shown = sample.roots.to_root(toes.position).astype(np.float32)
-        if sample.guide is not None:
+        if sample.guide is not None and sample.guide.foot_turn is not None:
             body = turn_feet(sample.legs, body, sample.guide.foot_turn)
         if sample.guide is None or self.always_reaches:
             drop = _drop(state, sample.ahead, sample, toes, dt)
@@ -112,8 +112,7 @@ class Stance:
         return Toes(position, velocity)
 
     def _step(self, state: StitchState, sample: Sample, target: Toes, dt: Floats) -> Toes:
-        guide = sample.guide
-        planted = sample.contacts.astype(np.float64) if guide is None else guide.planted
+        planted = _planted(sample)
         speed = np.hypot(target.velocity[..., 0], target.velocity[..., 2])
         halflife = footing.swing_halflife(speed, _SWING_SHORTEST, _SWING_LONGEST)
         state.toe_swing[...] = damper_exact(
@@ -178,6 +177,16 @@ class Stance:
         state.toe_speed[...] = toes.velocity
         state.toe_gap[...] = shown - target.position
         state.toe_gap_speed[...] = toes.velocity - target.velocity
+
+
+def _planted(sample: Sample) -> Floats:
+    """Return to which share `(N, 2)` toes stand: as guided, else as labels and own steps say."""
+    labels, guide = sample.contacts.astype(np.float64), sample.guide
+    if guide is None:
+        return labels
+    if guide.guided is None:
+        return guide.planted
+    return np.where(guide.guided[:, None], guide.planted, labels)
 
 
 def leave(state: StitchState, source: Motion, legs: Legs, rows: Flags) -> None:

@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
-from stridewire_engine.stitchers.columns import allocate, column
+from stridewire_engine.stitchers.columns import Columns, allocate, column
 from stridewire_engine.stitchers.legs import Legs
 
 
@@ -88,12 +88,20 @@ class Guide(NamedTuple):
     """`(N, 2)` share from 0, swinging, to 1, planted."""
     toe_offset: Vectors
     """`(N, 2, 3)` from the clips' toes to where swings lead, in the root's frame."""
-    foot_turn: Vectors
-    """`(N, 2, 3)` rotation vectors by which feet are turned, in the root's frame."""
+    foot_turn: Vectors | None
+    """`(N, 2, 3)` rotation vectors by which feet are turned, in the root's frame; None for none."""
+    guided: Flags | None = None
+    """`(N,)` who is guided, None for all; to others it says what their clips' labels say."""
 
     def take(self, rows: slice | Indices) -> "Guide":
         """Return some characters' guide."""
-        return Guide(*(array[rows] for array in self))
+        turn, guided = self.foot_turn, self.guided
+        return Guide(
+            self.planted[rows],
+            self.toe_offset[rows],
+            None if turn is None else turn[rows],
+            None if guided is None else guided[rows],
+        )
 
 
 class Sample(NamedTuple):
@@ -131,7 +139,7 @@ class Sample(NamedTuple):
 
 
 @dataclass
-class StitchState:
+class StitchState(Columns):
     """What stitchers keep for N characters; plain arrays, changed in place.
 
     The offsets always tell what is added to the sampled pose now and how it changes, whoever adds
@@ -196,15 +204,6 @@ class StitchState:
         """Return the state of characters of whom nothing was shown."""
         return cls(**allocate(cls, rows, {"J": joints, "1 + J": 1 + joints}))
 
-    def take(self, rows: slice | Indices) -> "StitchState":
-        """Return the rows: a view for a slice, a copy for indices."""
-        return StitchState(**{name: array[rows] for name, array in vars(self).items()})
-
-    def put(self, rows: slice | Indices, part: "StitchState") -> None:
-        """Write rows back."""
-        for name, array in vars(self).items():
-            array[rows] = getattr(part, name)
-
     def clear(self, rows: Flags) -> None:
         """Forget everything about some characters."""
         for array in vars(self).values():
@@ -246,8 +245,12 @@ def turn_to_world(vectors: Vectors, yaw: Floats) -> Vectors:
     """Turn vectors `(N, ..., 3)` of the roots' frames by their yaws `(N,)`."""
     shape = (-1, *(1,) * (vectors.ndim - 2))
     sine, cosine = np.sin(yaw).reshape(shape), np.cos(yaw).reshape(shape)
-    x, y, z = np.moveaxis(vectors, -1, 0)
-    return np.stack([x * cosine + z * sine, y + 0.0 * sine, z * cosine - x * sine], axis=-1)
+    x, z = vectors[..., 0], vectors[..., 2]
+    out = np.empty(vectors.shape, np.result_type(vectors, yaw))
+    out[..., 0] = x * cosine + z * sine
+    out[..., 1] = vectors[..., 1]
+    out[..., 2] = z * cosine - x * sine
+    return out
 
 
 def turn_to_root(vectors: Vectors, yaw: Floats) -> Vectors:
