@@ -16,7 +16,7 @@ from stridewire_engine.networks.blend import features
 from stridewire_engine.networks.blend.network import facts
 from stridewire_engine.networks.blend.pairs import Frames
 from stridewire_models.blend.networks import SHAPES, Correction, Paper, new_network
-from stridewire_models.blend.training import BEST
+from stridewire_models.run_folder import BEST
 
 _OPSET = 17
 FURTHEST = 2.0

@@ -1,11 +1,9 @@
 """Training: steps, looks at the validation data, checkpoints that a later run goes on from."""
 
-import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import torch
@@ -13,8 +11,6 @@ from torch import Tensor
 
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Floats
-from stridewire_engine.evaluation.checkout import commit
-from stridewire_engine.evaluation.training_runs import CONFIGURATION, CURVE, ENDED, configuration
 from stridewire_engine.networks.blend import features
 from stridewire_engine.networks.blend.correction import linear
 from stridewire_engine.networks.blend.features import JOINTS
@@ -23,8 +19,8 @@ from stridewire_models.blend.losses import correction_loss, paper_loss
 from stridewire_models.blend.networks import Correction, Paper, new_network
 from stridewire_models.blend.recipes import Phase, Recipe
 from stridewire_models.blend.rig_variation import vary_rigs
+from stridewire_models.run_folder import RunFolder, running_mean
 
-CHECKPOINT, BEST = "checkpoint.pt", "best.pt"
 _SAVE_EVERY_S = 300.0
 _EXAMPLES = 20_000
 _VALIDATION_PAIRS = 4_000
@@ -53,23 +49,20 @@ class Run:
     ) -> None:
         torch.manual_seed(seed)
         self.folder = folder
+        self._files = RunFolder(folder)
         self.recipe = recipe
         self.progress = Progress()
         self.network = new_network(recipe.variant)
         self._train = train
         self._rng = np.random.default_rng(seed)
         self._fit()
-        self.average = torch.optim.swa_utils.AveragedModel(
-            self.network,
-            multi_avg_fn=torch.optim.swa_utils.get_ema_multi_avg_fn(recipe.averaging),  # type: ignore[no-untyped-call]
-        )
+        self.average = running_mean(self.network, recipe.averaging)
         self._validation = validation.draw(np.random.default_rng(0), _VALIDATION_PAIRS, 2)
         self._begin_phase()
-        folder.mkdir(parents=True, exist_ok=True)
-        if (folder / CHECKPOINT).is_file():
+        if self._files.is_begun:
             self._load()
         else:
-            self._tell({"seed": seed, "commit": commit(), **asdict(recipe), ENDED: False})
+            self._files.begin({"seed": seed, **asdict(recipe)})
 
     @property
     def judged(self) -> Correction | Paper:
@@ -105,10 +98,7 @@ class Run:
                 self._save()
                 saved = time.monotonic()
         self._save()
-        self._tell({**configuration(self.folder), ENDED: True})
-
-    def _tell(self, facts: Mapping[str, Any]) -> None:
-        (self.folder / CONFIGURATION).write_text(json.dumps(facts, indent=1) + "\n")
+        self._files.end()
 
     def _step(self) -> None:
         phase = self.recipe.phases[self.progress.phase]
@@ -146,10 +136,10 @@ class Run:
         self.progress.since_best += 1
         if loss < self.progress.best:
             self.progress.best, self.progress.since_best = loss, 0
-            torch.save(network.state_dict(), self.folder / BEST)
+            self._files.keep(network)
         now = {"step": self.progress.step, "validation": loss, "cpu_s": self.progress.cpu_s}
         self.progress.curve.append(now)
-        (self.folder / CURVE).write_text(json.dumps(self.progress.curve) + "\n")
+        self._files.draw(self.progress.curve)
 
     def _begin_phase(self) -> None:
         phase = self.recipe.phases[self.progress.phase]
@@ -164,24 +154,23 @@ class Run:
         self.progress.step_in_phase = self.progress.since_best = 0
         if self.progress.phase < len(self.recipe.phases):
             # the next one fine-tunes the best so far
-            self.network.load_state_dict(torch.load(self.folder / BEST))
+            self.network.load_state_dict(self._files.best())
             self._begin_phase()
 
     def _save(self) -> None:
-        state = {
-            "progress": asdict(self.progress),
-            "network": self.network.state_dict(),
-            "average": self.average.state_dict(),
-            "optimiser": self._optimiser.state_dict(),
-            "schedule": self._schedule.state_dict(),
-            "rng": self._rng.bit_generator.state,
-        }
-        fresh = self.folder / f"{CHECKPOINT}.new"
-        torch.save(state, fresh)
-        fresh.replace(self.folder / CHECKPOINT)
+        self._files.save(
+            {
+                "progress": asdict(self.progress),
+                "network": self.network.state_dict(),
+                "average": self.average.state_dict(),
+                "optimiser": self._optimiser.state_dict(),
+                "schedule": self._schedule.state_dict(),
+                "rng": self._rng.bit_generator.state,
+            }
+        )
 
     def _load(self) -> None:
-        state: dict[str, Any] = torch.load(self.folder / CHECKPOINT, weights_only=False)
+        state = self._files.load()
         self.progress = Progress(**state["progress"])
         self.network.load_state_dict(state["network"])
         self.average.load_state_dict(state["average"])

@@ -9,12 +9,13 @@ from pathlib import Path
 import onnx
 import torch
 
+from stridewire_engine.evaluation.training_runs import CONFIGURATION
 from stridewire_engine.networks.rmr.features import INPUTS
 from stridewire_engine.networks.rmr.plans import WINDOW
 from stridewire_engine.networks.rmr.refiner import facts
 from stridewire_models.rmr.networks import Steps
 from stridewire_models.rmr.paper_export import paper_to_onnx, read_paper_run
-from stridewire_models.rmr.training import BEST, CONFIGURATION
+from stridewire_models.run_folder import BEST
 
 _OPSET = 17
 FURTHEST = 2.0

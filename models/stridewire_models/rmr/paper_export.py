@@ -9,11 +9,12 @@ from pathlib import Path
 import onnx
 import torch
 
+from stridewire_engine.evaluation.training_runs import CONFIGURATION, CURVE
 from stridewire_engine.networks.rmr.paper_poses import NUMBERS
 from stridewire_engine.networks.rmr.plans import WINDOW
 from stridewire_engine.networks.rmr.refiner import facts
 from stridewire_models.rmr.paper_networks import PaperNetwork
-from stridewire_models.rmr.training import BEST, CONFIGURATION, CURVE
+from stridewire_models.run_folder import BEST
 
 _OPSET = 17
 

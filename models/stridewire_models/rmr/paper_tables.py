@@ -9,9 +9,10 @@ from typing import Any
 
 import torch
 
+from stridewire_engine.evaluation.training_runs import CONFIGURATION, CURVE
 from stridewire_models.rmr.paper_task import PaperData, PaperTask
 from stridewire_models.rmr.recipes import PAPER, PaperRecipe
-from stridewire_models.rmr.training import CONFIGURATION, Run
+from stridewire_models.rmr.training import Run
 
 LOOK_EVERY = 200
 SEED = 0
@@ -53,7 +54,7 @@ def row(name: str, folder: Path) -> dict[str, Any]:
         folder: Of the run.
     """
     told = json.loads((folder / CONFIGURATION).read_text())
-    curve = json.loads((folder / "curve.json").read_text())
+    curve = json.loads((folder / CURVE).read_text())
     last = curve[-1]
     return {
         "training": name,
@@ -72,7 +73,7 @@ def is_done(name: str, folder: Path) -> bool:
         folder: Of the run.
     """
     path = folder / CONFIGURATION
-    if not path.is_file() or not (folder / "curve.json").is_file():
+    if not path.is_file() or not (folder / CURVE).is_file():
         return False
     told, recipe = json.loads(path.read_text()), asdict(TRAININGS[name])
     same = all(told[key] == value for key, value in recipe.items())

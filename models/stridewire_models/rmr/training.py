@@ -1,21 +1,19 @@
 """Training: steps, looks at the validation pairs, checkpoints that a later run goes on from."""
 
-import json
 import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import torch
 from torch import Tensor, nn
 
-from stridewire_engine.evaluation.checkout import commit
 from stridewire_models.rmr.recipes import Recipe
+from stridewire_models.run_folder import RunFolder, running_mean
 
-CHECKPOINT, BEST, CURVE, CONFIGURATION = "checkpoint.pt", "best.pt", "curve.json", "run.json"
 _SAVE_EVERY_S = 300.0
 _WARM = 0.02
 
@@ -61,14 +59,12 @@ class Run:
             seed: Of the batches.
         """
         self.folder = folder
+        self._files = RunFolder(folder)
         self.recipe = recipe
         self.progress = Progress()
         self._task = task
         self._seed = seed
-        self.average = torch.optim.swa_utils.AveragedModel(
-            task.network,
-            multi_avg_fn=torch.optim.swa_utils.get_ema_multi_avg_fn(recipe.averaging),  # type: ignore[no-untyped-call]
-        )
+        self.average = running_mean(task.network, recipe.averaging)
         self._optimiser = torch.optim.AdamW(
             task.network.parameters(),
             lr=recipe.learning_rate,
@@ -76,12 +72,10 @@ class Run:
             fused=True,
         )
         self._schedule = torch.optim.lr_scheduler.LambdaLR(self._optimiser, self._rate)
-        folder.mkdir(parents=True, exist_ok=True)
-        if (folder / CHECKPOINT).is_file():
+        if self._files.is_begun:
             self._load()
         else:
-            facts = {"seed": seed, "commit": commit(), **asdict(recipe)}
-            (folder / CONFIGURATION).write_text(json.dumps(facts, indent=1) + "\n")
+            self._files.begin({"seed": seed, **asdict(recipe)})
 
     def train(self, advance: Callable[[int], None], look_every: int) -> None:
         """Train to the end.
@@ -102,6 +96,7 @@ class Run:
                 self._save()
                 saved = time.monotonic()
         self._save()
+        self._files.end()
 
     def _step(self) -> None:
         step, every = self.progress.step, self.recipe.fresh_every
@@ -124,11 +119,11 @@ class Run:
         figures = self._task.look(network)
         if figures["validation"] < self.progress.best:
             self.progress.best = figures["validation"]
-            torch.save(network.state_dict(), self.folder / BEST)
+            self._files.keep(network)
         now = {"step": self.progress.step, "cpu_s": round(self.progress.cpu_s, 1)}
         now |= {name: float(f"{value:.6g}") for name, value in figures.items()}
         self.progress.curve.append(now)
-        (self.folder / CURVE).write_text(json.dumps(self.progress.curve) + "\n")
+        self._files.draw(self.progress.curve)
 
     def _rate(self, step: int) -> float:
         part = step / self.recipe.steps
@@ -137,19 +132,18 @@ class Run:
         return min(part / _WARM, 1.0) * fall if part < _WARM else fall
 
     def _save(self) -> None:
-        state = {
-            "progress": asdict(self.progress),
-            "network": self._task.network.state_dict(),
-            "average": self.average.state_dict(),
-            "optimiser": self._optimiser.state_dict(),
-            "schedule": self._schedule.state_dict(),
-        }
-        fresh = self.folder / f"{CHECKPOINT}.new"
-        torch.save(state, fresh)
-        fresh.replace(self.folder / CHECKPOINT)
+        self._files.save(
+            {
+                "progress": asdict(self.progress),
+                "network": self._task.network.state_dict(),
+                "average": self.average.state_dict(),
+                "optimiser": self._optimiser.state_dict(),
+                "schedule": self._schedule.state_dict(),
+            }
+        )
 
     def _load(self) -> None:
-        state: dict[str, Any] = torch.load(self.folder / CHECKPOINT, weights_only=False)
+        state = self._files.load()
         self.progress = Progress(**state["progress"])
         self._task.network.load_state_dict(state["network"])
         self.average.load_state_dict(state["average"])

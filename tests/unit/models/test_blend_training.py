@@ -29,7 +29,8 @@ from stridewire_models.blend.capsules import penetration
 from stridewire_models.blend.export import posture_deviation, read_run, to_onnx
 from stridewire_models.blend.networks import VARIANTS, new_network
 from stridewire_models.blend.recipes import RECIPES, Recipe
-from stridewire_models.blend.training import CHECKPOINT, Run
+from stridewire_models.blend.training import Run
+from stridewire_models.run_folder import CHECKPOINT
 
 PARITY = 1e-4
 """Largest difference of ONNX and torch, in metres, radians or distances."""

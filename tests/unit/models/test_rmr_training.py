@@ -30,8 +30,8 @@ from stridewire_models.rmr.losses import guide
 from stridewire_models.rmr.networks import Steps
 from stridewire_models.rmr.recipes import STEPS, StepsRecipe
 from stridewire_models.rmr.supply import live_tensors, tensors
-from stridewire_models.rmr.training import CHECKPOINT
 from stridewire_models.rmr.variants import steps_run
+from stridewire_models.run_folder import CHECKPOINT
 
 PARITY = 1e-4
 """Largest difference of ONNX and torch, in their own numbers."""
