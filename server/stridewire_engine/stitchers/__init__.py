@@ -51,5 +51,5 @@ AUTO = len(STITCHERS)
 """Stands for the better of two at each transition; see `auto`."""
 STITCHER_NAMES = (*(stitcher.name for stitcher in STITCHERS), "auto")
 """What a caller can ask for, by index."""
-DEFAULT_STITCHER = "spring"
+DEFAULT_STITCHER = "stance"
 """For callers that ask for none."""

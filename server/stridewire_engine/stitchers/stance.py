@@ -97,6 +97,9 @@ class Stance:
             ankles = shown + (body.ankle - body.toe)
         bent, ankles = bend(sample.legs, body, rotations, ankles)
         self._remember(state, sample, target, toes, ankles + (body.toe - body.ankle))
+        # where no time passes legs stay to the bit; they would move by what arithmetic rounds
+        still = np.ix_(np.flatnonzero((dt == 0.0) & ~sample.begins), sample.legs.joints)
+        bent[still] = state.legs_shown[still[0][:, 0]]
         state.legs_shown[...] = bent[:, sample.legs.joints]
         hips = hips.copy()
         hips[:, 1] -= drop
@@ -107,7 +110,9 @@ class Stance:
         position = sample.roots.to_world(toe)
         fresh = sample.begins[:, None, None]
         before = np.where(fresh, position, state.toe_shown - state.toe_gap)
-        velocity = (position - before) / np.maximum(dt, 1e-6)[:, None, None]
+        passed = dt[:, None, None]
+        moved = (position - before) / np.maximum(passed, 1e-6)
+        velocity = np.where(passed > 0.0, moved, state.toe_speed - state.toe_gap_speed)
         state.toe_shown[...] = np.where(fresh, position, state.toe_shown)
         return Toes(position, velocity)
 
