@@ -36,8 +36,9 @@ def two_bone_ik(
 ) -> Limb:
     """Turn the upper and the lower bone so that the end reaches the target.
 
-    The middle stays in its plane; only where the limb is nearly straight does `forward` say which
-    way it bends. A target out of reach is approached up to `buffer` short of full length.
+    The middle stays in its plane; where the limb is nearly straight or bent backwards, as blended
+    limbs may be, it leans towards `forward`, so that no middle ever flips. A target out of reach is
+    approached up to `buffer` short of full length.
 
     Args:
         start: `(..., 3)` hip or shoulder.
@@ -66,9 +67,10 @@ def two_bone_ik(
     bend = bend - direction * _dot(bend, direction)
     pole = quaternion.rotate(swing, forward)
     pole = pole - direction * _dot(pole, direction)
-    bend = bend + pole * np.maximum(0.0, _POLE - _length(bend))
-    # a limb bent backwards by just so much cancels the pole
-    bend = np.where(_length(bend) < 1e-6, pole, bend)
+    pole = pole / np.maximum(_length(pole), 1e-9)
+    # bent backwards by b it is pushed by b more, so that bend and pole never cancel
+    backwards = np.minimum(_dot(bend, pole), 0.0)
+    bend = bend + pole * np.maximum(0.0, _POLE - _length(bend) - 2.0 * backwards)
     bend = bend / np.maximum(_length(bend), 1e-9)
 
     along = (clamped**2 + upper_length**2 - lower_length**2) / (2.0 * clamped)

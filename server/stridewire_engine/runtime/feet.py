@@ -12,10 +12,20 @@ from stridewire.motion.array_types import Flags, Floats, Quaternions, Vectors
 from stridewire.motion.springs import decay_spring_damper_exact
 from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.runtime.settings import TickSettings
-from stridewire_engine.stitchers.legs import Legs, bend, leg_pose
+from stridewire_engine.stitchers.legs import (
+    REACH,
+    SOFT_REACH,
+    LegPose,
+    Legs,
+    bend,
+    leg_pose,
+    raise_heels,
+)
 from stridewire_engine.stitchers.stance import LANDING_WAY
 from stridewire_engine.stitchers.stitcher import turn_to_root, turn_to_world
 
+_WELL_MOVED = 0.02
+"""Metres by which a lock moves a toe before its heel rises as softly as it may."""
 _LOWEST_TOE = 0.5
 """A toe is never lower than so much of its height at rest."""
 
@@ -53,11 +63,19 @@ def plant(
     shift = turn_to_root(shown_toe - toe, state.root_yaw).astype(np.float32)
     bent, ankles = rotations, pose.ankle
     if not stands.all():
-        bent, ankles = bend(legs, pose, rotations, pose.ankle + shift)
+        pose, ankles = raise_heels(pose, pose.toe + shift, _reach(legs, pose, shift))
+        bent, ankles = bend(legs, pose, rotations, ankles)
     toes = ankles + (pose.toe - pose.ankle)
     _remember(state, np.concatenate([ankles, toes, hips[:, None]], axis=1), dt)
     _keep_for_stance(state, ~stands)
     return bent
+
+
+def _reach(legs: Legs, pose: LegPose, shift: Vectors) -> Floats:
+    """Return how far `(N, 2)` legs may be stretched; those that are not moved stay as they are."""
+    own = np.linalg.norm(pose.hip - pose.ankle, axis=-1)
+    moved = np.minimum(np.linalg.norm(shift, axis=-1) / _WELL_MOVED, 1.0)
+    return np.asarray(np.maximum(REACH * legs.length, own) + SOFT_REACH * (1.0 - moved))
 
 
 def _keep_for_stance(state: Characters, rows: Flags) -> None:

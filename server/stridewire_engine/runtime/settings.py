@@ -33,13 +33,13 @@ class TickSettings:
     """A clip is left at the latest so many seconds before its end."""
     root_halflife: float = 0.12
     """Damper of the root's velocity difference at a jump."""
-    adjust_position_halflife: float = 0.2
+    adjust_position_halflife: float = 0.1
     """Damper that pulls the character root to the simulated one."""
-    adjust_yaw_halflife: float = 0.2
+    adjust_yaw_halflife: float = 0.1
     """Damper that turns the character root to the simulated one."""
-    adjust_share: float = 0.15
+    adjust_share: float = 0.2
     """The pull is at most this share of the root's own motion, so that it hides in it."""
-    adjust_turn_per_metre: float = 0.25
+    adjust_turn_per_metre: float = 0.6
     """So many radians more may be turned for every metre walked."""
     leash: float = 0.35
     """The simulated root is at most so many metres ahead of the character's."""

@@ -11,9 +11,11 @@ from stridewire.motion.skeleton import Skeleton
 from stridewire.motion.two_bone_ik import two_bone_ik
 
 _SIDES = ("Left", "Right")
+REACH = 0.985
+"""Share of its length to which a leg is stretched where the clip does not stretch it further."""
 _MOST_ROLL = 0.9
 """A foot rolls over its toe by so many radians at most."""
-_SOFT_REACH = 0.03
+SOFT_REACH = 0.03
 """So many metres before a leg is stretched the foot begins to roll."""
 
 
@@ -108,7 +110,7 @@ def raise_heels(pose: LegPose, toes: Vectors, reach: Floats) -> tuple[LegPose, V
     length, distance = _length(foot), np.maximum(_length(up), 1e-6)
     cosine = np.sum(foot * up, axis=-1) / np.maximum(length * distance, 1e-9)
     angle = np.arccos(np.clip(cosine, -1.0, 1.0))
-    stretch = smooth_min(_length(toes + foot - pose.hip), reach, _SOFT_REACH)
+    stretch = smooth_min(_length(toes + foot - pose.hip), reach, SOFT_REACH)
     nearest = (distance**2 + length**2 - stretch**2) / np.maximum(2.0 * distance * length, 1e-9)
     widest = np.arccos(np.clip(nearest, -1.0, 1.0))
     excess = np.minimum(np.maximum(angle - widest, 0.0), _MOST_ROLL)

@@ -13,7 +13,14 @@ from stridewire.motion.array_types import Flags, Floats, Quaternions, Vectors
 from stridewire.motion.springs import damper_exact, spring_damper_exact
 from stridewire_engine.stitchers import footing, offsets, replanting
 from stridewire_engine.stitchers.footing import Toes
-from stridewire_engine.stitchers.legs import Legs, bend, leg_pose, raise_heels, turn_feet
+from stridewire_engine.stitchers.legs import (
+    REACH,
+    Legs,
+    bend,
+    leg_pose,
+    raise_heels,
+    turn_feet,
+)
 from stridewire_engine.stitchers.stitcher import (
     LegsAhead,
     Motion,
@@ -40,7 +47,6 @@ _STRONGEST_HIPS, _STRONGEST_TURN = 8.0, 25.0
 """Towards the clip's hips and joints, m/s² and rad/s²; wide offsets take longer."""
 _SWING_SHORTEST, _SWING_LONGEST = 0.06, 0.4
 _HEIGHT_HALFLIFE = 0.035
-_REACH = 0.985
 _DEEPEST_DROP = 0.08
 _DROP_HALFLIFE = 0.1
 _LIFT_BY_SPEED, _HIGHEST_LIFT = 0.03, 0.05
@@ -89,7 +95,7 @@ class Stance:
             drop = _drop(state, sample.ahead, sample, toes, dt)
             body = body.lowered(drop)
             own = np.linalg.norm(body.hip - body.ankle, axis=-1)
-            body, ankles = raise_heels(body, shown, np.maximum(_REACH * sample.legs.length, own))
+            body, ankles = raise_heels(body, shown, np.maximum(REACH * sample.legs.length, own))
         else:
             # a guide leads feet where legs reach; drops and raised heels would but jerk knees
             drop = _drop(state, None, sample, toes, dt)
@@ -263,7 +269,7 @@ def _need(state: StitchState, sample: Sample, ahead: LegsAhead, toes: Toes) -> F
     )  # fmt: skip
     hip = ahead.hips + fade[:, :, None]
     own = np.linalg.norm(ahead.hips - ahead.ankles, axis=-1)
-    reach = np.maximum(_REACH * sample.legs.length, own)
+    reach = np.maximum(REACH * sample.legs.length, own)
     away = hip - ankle
     aside = np.hypot(away[..., 0], away[..., 2])
     highest = np.sqrt(np.maximum(reach**2 - aside**2, 0.0))

@@ -89,14 +89,18 @@ def test_a_bent_knee_stays_in_its_plane() -> None:
     assert abs(knee[2]) < 1e-6
 
 
-def test_a_knee_bent_back_by_any_little_keeps_the_bones_whole() -> None:
-    """Hyperextended knees pass through the point where bend and pole cancel without breaking."""
-    back = np.linspace(0.0, 0.02, 81)
+def test_a_knee_bent_back_by_any_little_bends_forward() -> None:
+    """Hyperextended knees bend forward like straight ones, never flip, and keep the bones whole."""
     target = ANKLE + np.array([0.0, 0.1, 0.0])
-    for amount in back:
+    shown = []
+    for amount in np.linspace(-0.05, 0.1, 151):
         knee = np.array([0.1, 0.48, -amount])
-        limb = solve(target, knee)
-        np.testing.assert_allclose(joints(limb, knee)[1], target, atol=1e-5)
+        middle, end = joints(solve(target, knee), knee)
+        np.testing.assert_allclose(end, target, atol=1e-5)
+        shown.append(middle)
+    steps = np.linalg.norm(np.diff(shown, axis=0), axis=-1)
+    assert np.min(shown, axis=0)[2] > 0.1
+    assert steps.max() < 0.01
 
 
 def test_a_target_at_the_start_folds_the_limb() -> None:
