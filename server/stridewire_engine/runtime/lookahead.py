@@ -57,13 +57,15 @@ def legs_ahead(
     """
     count = len(times)
     clip = np.repeat(state.clip, count)
-    now = sampling.moments(library, clip, np.repeat(state.clip_time, count))
+    now = sampling.moments(library, state.clip, state.clip_time).repeated(count)
     then = sampling.moments(
         library, clip, (state.clip_time[:, None] + state.pace[:, None] * times).ravel()
     )
     motion = sampling.root_delta(library, now, then).reshape(-1, count, 3)
     faded = -np.expm1(-_LN2 * times / root_halflife) * (root_halflife / _LN2)
     motion += state.root_offset[:, None] * faded[:, None] + pull[:, None] * times[:, None]
+    # a few metres and radians at most: float32 is exact enough, and half the work
+    motion = motion.astype(np.float32)
     turn = motion[..., 2, None]
     sine, cosine = np.sin(turn), np.cos(turn)
     hips, ankles, toes = (_move(_between(track, then), motion, sine, cosine) for track in tracks)

@@ -89,11 +89,11 @@ class Refining:
 
     def _plans(self, rows: Characters) -> Plans:
         count = len(rows)
+        now = sampling.moments(self._library, rows.clip, rows.clip_time)
         clip = np.repeat(rows.clip, GUIDED_FRAMES)
-        now = sampling.moments(self._library, clip, np.repeat(rows.clip_time, GUIDED_FRAMES))
         then = sampling.moments(self._library, clip, (rows.clip_time[:, None] + _TIMES).ravel())
-        roots = self._roots(rows, now, then)
-        hips, pose = self._sprung(rows, then)
+        roots = self._roots(rows, now.repeated(GUIDED_FRAMES), then)
+        hips, pose = self._sprung(rows, now, then)
         toes, weight = self._tracks.toes, then.weight[:, None, None]
         own = toes[then.rows] + weight * (toes[then.rows + 1] - toes[then.rows])
 
@@ -127,30 +127,31 @@ class Refining:
         yaw = rows.root_yaw[:, None] + motion[..., 2]
         return Roots(position.reshape(-1, 3), yaw.reshape(-1))
 
-    def _sprung(self, rows: Characters, then: sampling.Moments) -> tuple[Vectors, LegPose]:
+    def _sprung(
+        self, rows: Characters, now: sampling.Moments, then: sampling.Moments
+    ) -> tuple[Vectors, LegPose]:
         """Return hips `(M K, 3)` and legs of the coming frames, springs over the seam."""
-        hips, rotations = sampling.sample_pose(self._library, then)
+        hips, rotations = sampling.sample_pose(self._library, then, _LOWER)
         away = rows.offset_hips - np.stack(
             [0.0 * rows.hip_drop, rows.hip_drop, 0.0 * rows.hip_drop], -1
         )
-        halflife = np.full((1, 1, 1), _HALFLIFE)
-        passed = _TIMES[None, :, None]
+        halflife = np.full((1, 1, 1), _HALFLIFE, np.float32)
+        passed = _TIMES[None, :, None].astype(np.float32)
         move, _ = decay(away[:, None], rows.offset_hips_velocity[:, None], halflife, passed)
         turn, _ = decay(
-            self._turned_by(rows)[:, None, :_LOWER],
+            self._turned_by(rows, now)[:, None],
             rows.offset_angular_velocity[:, None, :_LOWER],
             halflife[..., None],
             passed[..., None],
         )
         hips = hips + move.reshape(-1, 3)
         turned = quaternion.from_scaled_axis(turn.reshape(-1, _LOWER, 3))
-        lower = quaternion.multiply(turned, rotations[:, :_LOWER])
+        lower = quaternion.multiply(turned, rotations)
         return hips, leg_pose(self._legs, hips, lower)
 
-    def _turned_by(self, rows: Characters) -> Vectors:
-        """Return by what joints `(M, J, 3)` are off the new clip: legs as they were bent."""
-        now = sampling.moments(self._library, rows.clip, rows.clip_time)
-        _, rotations = sampling.sample_pose(self._library, now)
+    def _turned_by(self, rows: Characters, now: sampling.Moments) -> Vectors:
+        """Return by what lower joints `(M, L, 3)` are off the new clip: legs as they were bent."""
+        _, rotations = sampling.sample_pose(self._library, now, _LOWER)
         legs = self._legs
         body = quaternion.multiply(
             quaternion.from_scaled_axis(rows.offset_rotations[:, legs.joints]),
@@ -159,7 +160,7 @@ class Refining:
         bent = np.any(rows.legs_shown, axis=(1, 2))[:, None, None]
         shown = np.where(bent, rows.legs_shown, body)
         back = quaternion.conjugate(rotations[:, legs.joints])
-        off = rows.offset_rotations.copy()
+        off = rows.offset_rotations[:, :_LOWER].copy()
         off[:, legs.joints] = quaternion.to_scaled_axis(
             quaternion.absolute(quaternion.multiply(shown, back))
         )

@@ -23,6 +23,10 @@ class Moments(NamedTuple):
         """`(N,)` the nearer of both rows."""
         return self.rows + (self.weight >= 0.5)
 
+    def repeated(self, count: int) -> "Moments":
+        """Return each moment so many times in a row."""
+        return Moments(np.repeat(self.rows, count), np.repeat(self.weight, count))
+
 
 def wrap_times(library: Library, clip: Indices, time: Floats) -> Floats:
     """Return times `(N,)` within loops, from 0 to their length; other clips' times as they are."""
@@ -39,11 +43,20 @@ def moments(library: Library, clip: Indices, time: Floats) -> Moments:
     return Moments(library.clip_starts[clip] + frame, (at - frame).astype(np.float32))
 
 
-def sample_pose(library: Library, at: Moments) -> tuple[Vectors, Quaternions]:
-    """Return hips `(N, 3)` relative to the root and local rotations `(N, J, 4)`."""
+def sample_pose(
+    library: Library, at: Moments, joints: int | None = None
+) -> tuple[Vectors, Quaternions]:
+    """Return hips `(N, 3)` relative to the root and local rotations `(N, J, 4)`.
+
+    Args:
+        library: The library.
+        at: Moments.
+        joints: J, if only the first ones are wanted.
+    """
     weight = at.weight[:, None]
     a, b = library.hips[at.rows], library.hips[at.rows + 1]
-    rotations = quaternion.nlerp(library.rotations[at.rows], library.rotations[at.rows + 1], weight)
+    turns = library.rotations[:, :joints]
+    rotations = quaternion.nlerp(turns[at.rows], turns[at.rows + 1], weight)
     return a + weight * (b - a), rotations
 
 

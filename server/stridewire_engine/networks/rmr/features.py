@@ -86,8 +86,12 @@ def turned(vectors: Vectors, yaw: Floats) -> Vectors:
     """Turn vectors `(N, ..., 3)` about +Y by `(N,)` radians."""
     shape = (-1, *(1,) * (vectors.ndim - 2))
     sine, cosine = np.sin(yaw).reshape(shape), np.cos(yaw).reshape(shape)
-    x, y, z = np.moveaxis(vectors, -1, 0)
-    return np.stack([x * cosine + z * sine, y, z * cosine - x * sine], axis=-1)
+    x, z = vectors[..., 0], vectors[..., 2]
+    out = np.empty(vectors.shape, np.result_type(vectors, yaw))
+    out[..., 0] = x * cosine + z * sine
+    out[..., 1] = vectors[..., 1]
+    out[..., 2] = z * cosine - x * sine
+    return out
 
 
 def _flat(feet: Floats) -> Floats:

@@ -4,6 +4,7 @@ The network says, once a token of four frames, where control points of cubic B-s
 each frame whether a toe is planted. Curves are nothing before and at the first seam.
 """
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -47,7 +48,7 @@ def guidance(plans: Plans, curves: Floats, contacts: Floats, distance: Floats) -
     """
     n, frames = len(plans), plans.frames
     door = onset(plans.since_first)
-    smooth = np.einsum("tk,nkc->ntc", basis(frames), curves) * door[..., None]
+    smooth = basis(frames) @ curves * door[..., None]
     smooth = PlanFrame.of(plans).leave(smooth.reshape(n, frames, 4, 3))
     logits = LOGIT_SCALE * contacts.reshape(n, frames, 2)
     logits = logits + np.where(plans.contacts, LABEL_LOGIT, -LABEL_LOGIT)
@@ -64,6 +65,7 @@ def onset(since_first: Indices) -> Floats:
     return np.asarray(x * x * (3.0 - 2.0 * x))
 
 
+@cache
 def basis(frames: int) -> Floats:
     """Return cubic B-splines `(T, K)` of K tokens at T frames; each row sums to 1."""
     middle = (np.arange(frames // TOKEN) + 0.5) * TOKEN
@@ -71,4 +73,6 @@ def basis(frames: int) -> Floats:
     near = 2.0 / 3.0 - away**2 + 0.5 * away**3
     far = np.maximum(2.0 - away, 0.0) ** 3 / 6.0
     weights = np.where(away < 1.0, near, far)
-    return np.asarray(weights / weights.sum(axis=1, keepdims=True))
+    spline = np.asarray(weights / weights.sum(axis=1, keepdims=True))
+    spline.flags.writeable = False
+    return spline
