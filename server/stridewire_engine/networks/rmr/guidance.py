@@ -48,7 +48,7 @@ def guidance(plans: Plans, curves: Floats, contacts: Floats, distance: Floats) -
     """
     n, frames = len(plans), plans.frames
     door = onset(plans.since_first)
-    smooth = basis(frames) @ curves * door[..., None]
+    smooth: Floats = basis(frames) @ curves * door[..., None]
     smooth = PlanFrame.of(plans).leave(smooth.reshape(n, frames, 4, 3))
     logits = LOGIT_SCALE * contacts.reshape(n, frames, 2)
     logits = logits + np.where(plans.contacts, LABEL_LOGIT, -LABEL_LOGIT)
