@@ -16,6 +16,7 @@ from stridewire._messages import Frame, Transition, TransitionReason
 from stridewire._session import Session
 from stridewire.motion.array_types import Floats
 from stridewire.recording import Recording, toe_sliding
+from stridewire.refined_share import RefinedShare
 from stridewire.scripts import Controls
 
 _SKATING_SPEED = 0.1
@@ -38,6 +39,8 @@ class Run:
     """Frames that the server skipped."""
     transitions: int = 0
     """Jumps within the library, beginnings not counted."""
+    share: RefinedShare = field(default_factory=RefinedShare)
+    """Of the transitions, how many a network refined."""
     latencies_s: list[float] = field(default_factory=list)
     """Of each frame received: from its control's scheduled time to receipt."""
 
@@ -46,6 +49,8 @@ class Run:
         self.recording.add(frame)
         self.dropped += frame.dropped
         self.latencies_s.append(received_s - frame.client_time_s)
+        for event in frame.events:
+            self.share.take(event)
         self.transitions += sum(
             isinstance(event, Transition) and event.reason is not TransitionReason.START
             for event in frame.events
@@ -68,6 +73,7 @@ class Run:
             "max_ms": float(latencies_ms.max()),
             "transitions": self.transitions,
             "transitions_per_s": self.transitions * self.rate_hz / self.sent / len(characters),
+            "refined_pct": self.share.percent,
             "sliding_c_cm_s": float(sliding.mean()) if len(sliding) else 0.0,
             "skating_pct": (
                 100.0 * float(np.mean(sliding > 100.0 * _SKATING_SPEED)) if len(sliding) else 0.0

@@ -24,6 +24,7 @@ from stridewire._messages import (
     Edit,
     Event,
     ExcludedMatch,
+    FallbackReason,
     Frame,
     Ground,
     GroundPose,
@@ -193,6 +194,8 @@ transitions = st.builds(
     bias=single,
     runners_up=st.lists(matches, max_size=2).map(tuple),
     excluded=excluded,
+    fallback=st.none() | st.sampled_from(FallbackReason),
+    refined_frames=uint,
 )
 events: st.SearchStrategy[Event] = st.one_of(
     transitions,

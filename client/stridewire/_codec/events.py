@@ -14,6 +14,7 @@ from stridewire._messages import (
     ClipEnd,
     ContactChange,
     Event,
+    FallbackReason,
     TagEntered,
     Transition,
     TransitionReason,
@@ -63,6 +64,7 @@ def decode_event(wire: pb.Event) -> Event:
 
 
 def _encode_transition(event: Transition) -> pb.Transition:
+    fallback = "UNSPECIFIED" if event.fallback is None else event.fallback.name
     wire = pb.Transition(
         to=pose_pb2.ClipTime(clip=event.to_clip, time_s=event.to_time_s),
         cost=event.cost,
@@ -72,6 +74,8 @@ def _encode_transition(event: Transition) -> pb.Transition:
         bias=event.bias,
         runners_up=map(encode_match, event.runners_up),
         excluded=map(encode_excluded, event.excluded),
+        fallback=f"FALLBACK_REASON_{fallback}",
+        refined_frames=event.refined_frames,
     )
     if event.from_clip:
         # `from` is a keyword of Python, so that the generated attribute can only be named so.
@@ -98,4 +102,6 @@ def _decode_transition(wire: pb.Event) -> Transition:
         bias=transition.bias,
         runners_up=tuple(map(decode_match, transition.runners_up)),
         excluded=tuple(map(decode_excluded, transition.excluded)),
+        fallback=FallbackReason(transition.fallback) if transition.fallback else None,
+        refined_frames=transition.refined_frames,
     )

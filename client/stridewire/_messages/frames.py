@@ -28,6 +28,17 @@ class TransitionReason(IntEnum):
     FILTER_CHANGE = 6
 
 
+class FallbackReason(IntEnum):
+    """Why a transition that `refine` should hide is hidden by `stance`."""
+
+    NO_NETWORK = 1
+    OTHER_SKELETON = 2
+    OTHER_RATE = 3
+    TOO_FEW_FRAMES = 4
+    BUSY = 5
+    UNLIKE_TRAINING = 6
+
+
 class FrameFlag(IntEnum):
     """States of a character within a frame; the bit of a flag in `Frame.flags` is `1 << flag`."""
 
@@ -59,6 +70,10 @@ class Transition:
     """The next best moments, best first."""
     excluded: tuple[ExcludedMatch, ...] = ()
     """Better moments that were not to be chosen, best first."""
+    fallback: FallbackReason | None = None
+    """Why `stance` hides it, where `refine` was asked for."""
+    refined_frames: int = 0
+    """For how many frames a network guided the feet after the character's transition before."""
 
 
 @dataclass(frozen=True)

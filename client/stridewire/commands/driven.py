@@ -16,9 +16,12 @@ from stridewire.formats.writing import write_clip
 _SPACING = 2.0
 
 
-def spread_out(characters: int) -> list[CharacterSpec]:
+def spread_out(characters: int, stitcher: str = "") -> list[CharacterSpec]:
     """Return characters side by side, two metres apart, looking along +Z."""
-    return [CharacterSpec(i, GroundPose((_SPACING * i, 0.0, 0.0))) for i in range(characters)]
+    return [
+        CharacterSpec(i, GroundPose((_SPACING * i, 0.0, 0.0)), stitcher=stitcher)
+        for i in range(characters)
+    ]
 
 
 def drive_with_progress(
@@ -99,12 +102,26 @@ def tell(opened: Opened, run: Run, files: Sequence[Path], *, way: str) -> None:
     click.echo(
         f"transitions {run.transitions} ({figures['transitions_per_s']:.2f} a second and character)"
     )
+    if run.share.refined or run.share.reasons:
+        click.echo(f"refined     {_refined(run)}")
     click.echo(
         f"sliding     {figures['sliding_c_cm_s']:.2f} cm/s mean planar speed of planted toes, "
         f"{figures['skating_pct']:.1f} % above 10 cm/s"
     )
     for path in files:
         click.echo(f"wrote       {path}")
+
+
+def _refined(run: Run) -> str:
+    share = run.share
+    fell_back = ", ".join(
+        f"{count} {reason.name.lower().replace('_', ' ')}"
+        for reason, count in sorted(share.reasons.items())
+    )
+    return (
+        f"{share.percent:.0f} % of the {share.ended} transitions that the next one ended; "
+        f"fell back: {fell_back or 'none'}"
+    )
 
 
 def _latency(run: Run, figures: dict[str, float], way: str) -> str:

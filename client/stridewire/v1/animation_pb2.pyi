@@ -54,6 +54,16 @@ class TransitionReason(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     TRANSITION_REASON_START: _ClassVar[TransitionReason]
     TRANSITION_REASON_FILTER_CHANGE: _ClassVar[TransitionReason]
 
+class FallbackReason(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    FALLBACK_REASON_UNSPECIFIED: _ClassVar[FallbackReason]
+    FALLBACK_REASON_NO_NETWORK: _ClassVar[FallbackReason]
+    FALLBACK_REASON_OTHER_SKELETON: _ClassVar[FallbackReason]
+    FALLBACK_REASON_OTHER_RATE: _ClassVar[FallbackReason]
+    FALLBACK_REASON_TOO_FEW_FRAMES: _ClassVar[FallbackReason]
+    FALLBACK_REASON_BUSY: _ClassVar[FallbackReason]
+    FALLBACK_REASON_UNLIKE_TRAINING: _ClassVar[FallbackReason]
+
 class NoticeKind(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
     NOTICE_KIND_UNSPECIFIED: _ClassVar[NoticeKind]
@@ -87,6 +97,13 @@ TRANSITION_REASON_CLIP_END: TransitionReason
 TRANSITION_REASON_FORCED: TransitionReason
 TRANSITION_REASON_START: TransitionReason
 TRANSITION_REASON_FILTER_CHANGE: TransitionReason
+FALLBACK_REASON_UNSPECIFIED: FallbackReason
+FALLBACK_REASON_NO_NETWORK: FallbackReason
+FALLBACK_REASON_OTHER_SKELETON: FallbackReason
+FALLBACK_REASON_OTHER_RATE: FallbackReason
+FALLBACK_REASON_TOO_FEW_FRAMES: FallbackReason
+FALLBACK_REASON_BUSY: FallbackReason
+FALLBACK_REASON_UNLIKE_TRAINING: FallbackReason
 NOTICE_KIND_UNSPECIFIED: NoticeKind
 NOTICE_KIND_DRAINING: NoticeKind
 NOTICE_KIND_DEGRADED: NoticeKind
@@ -403,7 +420,7 @@ class Event(_message.Message):
     def __init__(self, character: _Optional[int] = ..., frame: _Optional[int] = ..., transition: _Optional[_Union[Transition, _Mapping]] = ..., contact: _Optional[_Union[ContactChange, _Mapping]] = ..., clip_end: _Optional[_Union[ClipEnd, _Mapping]] = ..., tag_entered: _Optional[_Union[TagEntered, _Mapping]] = ...) -> None: ...
 
 class Transition(_message.Message):
-    __slots__ = ("to", "cost", "stay_cost", "channels", "reason", "bias", "runners_up", "excluded")
+    __slots__ = ("to", "cost", "stay_cost", "channels", "reason", "bias", "runners_up", "excluded", "fallback", "refined_frames")
     FROM_FIELD_NUMBER: _ClassVar[int]
     TO_FIELD_NUMBER: _ClassVar[int]
     COST_FIELD_NUMBER: _ClassVar[int]
@@ -413,6 +430,8 @@ class Transition(_message.Message):
     BIAS_FIELD_NUMBER: _ClassVar[int]
     RUNNERS_UP_FIELD_NUMBER: _ClassVar[int]
     EXCLUDED_FIELD_NUMBER: _ClassVar[int]
+    FALLBACK_FIELD_NUMBER: _ClassVar[int]
+    REFINED_FRAMES_FIELD_NUMBER: _ClassVar[int]
     to: _pose_pb2.ClipTime
     cost: float
     stay_cost: float
@@ -421,7 +440,9 @@ class Transition(_message.Message):
     bias: float
     runners_up: _containers.RepeatedCompositeFieldContainer[_match_pb2.Match]
     excluded: _containers.RepeatedCompositeFieldContainer[_match_pb2.ExcludedMatch]
-    def __init__(self, to: _Optional[_Union[_pose_pb2.ClipTime, _Mapping]] = ..., cost: _Optional[float] = ..., stay_cost: _Optional[float] = ..., channels: _Optional[_Iterable[_Union[_pose_pb2.ChannelCost, _Mapping]]] = ..., reason: _Optional[_Union[TransitionReason, str]] = ..., bias: _Optional[float] = ..., runners_up: _Optional[_Iterable[_Union[_match_pb2.Match, _Mapping]]] = ..., excluded: _Optional[_Iterable[_Union[_match_pb2.ExcludedMatch, _Mapping]]] = ..., **kwargs) -> None: ...
+    fallback: FallbackReason
+    refined_frames: int
+    def __init__(self, to: _Optional[_Union[_pose_pb2.ClipTime, _Mapping]] = ..., cost: _Optional[float] = ..., stay_cost: _Optional[float] = ..., channels: _Optional[_Iterable[_Union[_pose_pb2.ChannelCost, _Mapping]]] = ..., reason: _Optional[_Union[TransitionReason, str]] = ..., bias: _Optional[float] = ..., runners_up: _Optional[_Iterable[_Union[_match_pb2.Match, _Mapping]]] = ..., excluded: _Optional[_Iterable[_Union[_match_pb2.ExcludedMatch, _Mapping]]] = ..., fallback: _Optional[_Union[FallbackReason, str]] = ..., refined_frames: _Optional[int] = ..., **kwargs) -> None: ...
 
 class ContactChange(_message.Message):
     __slots__ = ("joint", "planted")

@@ -14,6 +14,8 @@ from stridewire_engine.evaluation.tally import Mean, Percentile, Tally
 BLOCK_FRAMES = 10
 _AFTER_SEAM = 10
 _TRUTH_FRAMES = 10
+_REFINED_FRAMES = 8
+"""A transition is refined if a network guided so many frames of it."""
 
 Figures = dict[str, Tally]
 
@@ -51,6 +53,7 @@ class Judged:
         self._truth = _truth_error(stream, captured)
         position = stream.pose.root_position[..., [0, 2]]
         self._away = metrics.following_error(position, stream.wanted.velocity, RATE)
+        self._refined = _refined(stream)
         self._seams = np.zeros(stream.since.shape)
         self._seams[stream.seams.frame, stream.seams.character] = 1.0
 
@@ -85,6 +88,7 @@ class Judged:
             "truth_error_cm": Mean.of(np.where(mask, self._truth, np.nan), 100.0),
             "following_error_m": Mean.of(np.where(mask, self._away, np.nan)),
             "transitions_per_s": Mean.of(np.where(mask, self._seams, np.nan), RATE),
+            "refined_pct": Mean.of(np.where(mask, self._refined, np.nan), 100.0),
             "frames": _count(mask),
         }
 
@@ -131,6 +135,21 @@ def _lag(stream: Stream, captured: Captured, toes: Floats) -> Floats:
     weight = stream.moments.weight[..., None, None]
     first, second = local[stream.moments.rows], local[stream.moments.rows + 1]
     return metrics.distance(toes, under_root(stream, first + weight * (second - first)))
+
+
+def _refined(stream: Stream) -> Floats:
+    """Return where transitions come `(T, S)` whether a network refined them, NaN elsewhere.
+
+    Those that are cut off by the stream's end do not count; those cut off by the next are not.
+    """
+    out = np.full(stream.since.shape, np.nan)
+    ahead = np.arange(_REFINED_FRAMES)
+    whole = stream.seams.frame + _REFINED_FRAMES <= len(out)
+    frame, who = stream.seams.frame[whole], stream.seams.character[whole]
+    frames = frame[:, None] + ahead
+    led = stream.refined[frames, who[:, None]] & (stream.since[frames, who[:, None]] == ahead)
+    out[frame, who] = led.all(axis=1)
+    return out
 
 
 def _truth_error(stream: Stream, captured: Captured) -> Floats:

@@ -13,14 +13,14 @@ from typing import NamedTuple
 import numpy as np
 
 from stridewire.motion import kinematics, quaternion
-from stridewire.motion.array_types import Floats, Indices, Vectors
+from stridewire.motion.array_types import Flags, Floats, Indices, Vectors
 from stridewire.motion.clip import Clip, Pose
 from stridewire.scripts import script
 from stridewire_engine.evaluation.cell import Cell
 from stridewire_engine.library import Library
 from stridewire_engine.matching.candidates import CandidateSet
 from stridewire_engine.matching.search import Found, Matcher
-from stridewire_engine.runtime import TickSettings, sampling
+from stridewire_engine.runtime import TickSettings, refining, sampling
 from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.runtime.tick import Block, Tick
 from stridewire_engine.stitchers import DEFAULT_STITCHER, STITCHER_NAMES
@@ -68,6 +68,8 @@ class Stream:
     """`(T, S, 2, 3)`, NaN where not locked."""
     simulated: Floats
     """`(T, S, 4)`."""
+    refined: Flags
+    """`(T, S)` where a network guided the feet."""
     wanted: Wanted
     seams: Seams
 
@@ -162,7 +164,8 @@ def record(
         step: Makes a frame.
     """
     blocks: list[_Shown] = []
-    playing, seams = [], []
+    playing: list[_Playing] = []
+    seams = []
     clip_before, time_before = state.clip.copy(), state.clip_time.copy()
     velocity = np.concatenate([asked.velocity for asked in wanted], axis=1)
     facing = np.concatenate([asked.facing for asked in wanted], axis=1)
@@ -171,19 +174,19 @@ def record(
         state.desired_facing[:] = facing[frame]
         block = step()
         blocks.append(_Shown(*(np.array(getattr(block, name)) for name in _Shown._fields)))
-        playing.append((state.clip.copy(), state.clip_time.copy()))
+        playing.append(_Playing(state.clip.copy(), state.clip_time.copy(), refining.guided(state)))
         if block.jumps is not None:
             who = block.jumps.characters[block.jumps.from_clip >= 0]
             old = sampling.moments(library, clip_before[who], time_before[who]).nearest
             seams.append(Seams(np.full(len(who), frame), who, old))
-        clip_before, time_before = playing[-1]
+        clip_before, time_before = playing[-1].clip, playing[-1].time
     shown = _Shown(*(np.stack(part) for part in zip(*blocks, strict=True)))
-    moments = sampling.moments(library, *(np.stack(part) for part in zip(*playing, strict=True)))
+    played = _Playing(*(np.stack(part) for part in zip(*playing, strict=True)))
     joined = Seams(*(np.concatenate(part) for part in zip(*seams, strict=True)))
     start = 0
     for asked in wanted:
         stop = start + asked.facing.shape[1]
-        yield _stream(library, shown, moments, joined, asked, slice(start, stop))
+        yield _stream(library, shown, played, joined, asked, slice(start, stop))
         start = stop
 
 
@@ -197,10 +200,18 @@ class _Shown(NamedTuple):
     simulated_root: Floats
 
 
+class _Playing(NamedTuple):
+    """What is kept of the state after a tick."""
+
+    clip: Indices
+    time: Floats
+    refined: Flags
+
+
 def _stream(
     library: Library,
     shown: _Shown,
-    moments: sampling.Moments,
+    played: _Playing,
     seams: Seams,
     wanted: Wanted,
     who: slice,
@@ -208,7 +219,7 @@ def _stream(
     """Return the stream of some of the characters, in float64."""
     mine = _Shown(*(part[:, who].astype(np.float64) for part in shown))
     pose = Pose(mine.root[..., :3], mine.root[..., 3:], mine.hips, mine.rotations)
-    at = sampling.Moments(moments.rows[:, who], moments.weight[:, who])
+    at = sampling.moments(library, played.clip[:, who], played.time[:, who])
     inside = (seams.character >= who.start) & (seams.character < who.stop)
     here = Seams(seams.frame[inside], seams.character[inside] - who.start, seams.from_row[inside])
     return Stream(
@@ -219,6 +230,7 @@ def _stream(
         _since(here, mine.root.shape[:2]),
         mine.foot_targets,
         mine.simulated_root,
+        played.refined[:, who],
         wanted,
         here,
     )

@@ -129,7 +129,8 @@ def _moment(session: Session, frame: Frame, at: int, before: Characters, dt: Flo
         clip_time_s=float(after.clip_time[0]),
         searched=due > 0,
         reason=TransitionReason(due).name.lower().replace("_", " ") if due else "",
-        verdict=_verdict(due, seen, transition, float(row.until_search[0] - dt[at])),
+        verdict=_verdict(due, seen, transition, float(row.until_search[0] - dt[at]))
+        + _unrefined(transition),
         stay=None if begins else _stay(crowd, seen),
         bias=float(seen.bias[0]),
         candidates=candidates,
@@ -155,6 +156,13 @@ def _stay(crowd: Crowd, seen: choice.Considered) -> Match:
         dict(zip(names, seen.stay_costs[0].tolist(), strict=True)),
         float(crowd.matcher.bias[row]),
     )
+
+
+def _unrefined(transition: Transition | None) -> str:
+    """Say why `stance` hides a transition that `refine` should hide."""
+    if transition is None or transition.fallback is None:
+        return ""
+    return f"; not refined: {transition.fallback.name.lower().replace('_', ' ')}"
 
 
 def _verdict(due: int, seen: choice.Considered, transition: Transition | None, wait: float) -> str:

@@ -150,13 +150,17 @@ class Characters(Columns):
     past_contacts: Flags = column(PAST_FRAMES, 2, dtype=np.bool_)
     past_frames: Indices = column(dtype=np.int8)
     """How many of them follow each other evenly."""
+    past_uneven: Flags = column(dtype=np.bool_)
+    """The frame before those was not a sixtieth of a second long."""
     guide_frames: Indices = column(dtype=np.int8)
     """For how many frames after the last transition there is a guide."""
     guide_planted: Floats = column(GUIDED_FRAMES, 2)
     guide_offset: Vectors = column(GUIDED_FRAMES, 2, 3)
     """In the world."""
     fallback: Indices = column(dtype=np.int8)
-    """Why there is no guide: a `Fallback`."""
+    """Why there is no guide: a `FallbackReason`, or 0."""
+    refined_frames: Indices = column(dtype=np.int8)
+    """For how many frames there was a guide after the transition before the last."""
 
     # the feet: left and right
     planted: Flags = column(2, dtype=np.bool_)

@@ -12,6 +12,7 @@ from stridewire._messages import (
     ContactChange,
     Detail,
     Event,
+    FallbackReason,
     TagEntered,
     Transition,
     TransitionReason,
@@ -68,6 +69,7 @@ class TickEvents(Sequence[Event]):
             reason = TransitionReason(int(jumps.reason[i]))
             if reason is TransitionReason.CLIP_END:
                 yield ClipEnd(character, self.frame, from_clip)
+            fallback = int(self.block.fallback[jumps.characters[i]])
             transition = Transition(
                 character,
                 self.frame,
@@ -76,6 +78,8 @@ class TickEvents(Sequence[Event]):
                 clips[jumps.to_clip[i]].name,
                 float(jumps.to_time[i]),
                 reason,
+                fallback=FallbackReason(fallback) if fallback else None,
+                refined_frames=int(self.block.refined_frames[jumps.characters[i]]),
             )
             yield self._with_costs(transition, jumps, int(i)) if costs else transition
 

@@ -6,10 +6,9 @@ says fades out at the plan's end. Turns of feet are left alone: the next transit
 within a frame, which jerks knees.
 """
 
-from enum import IntEnum
-
 import numpy as np
 
+from stridewire._messages import FallbackReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Vectors
 from stridewire_engine.library import Library
@@ -36,16 +35,7 @@ _TELEPORT = 1.0
 _PLANTED = 0.5
 _FEET, _TOES, _HIPS = [0, 1], [2, 3], 4
 _TIMES = (np.arange(GUIDED_FRAMES) + 1) / FRAME_RATE
-
-
-class Fallback(IntEnum):
-    """Why the network does not guide a character whose stitcher is `refine`."""
-
-    NONE = 0
-    NO_NETWORK = 1
-    OTHER_RATE = 2
-    BUSY = 3
-    UNLIKE_TRAINING = 4
+_NO_FALLBACK = 0
 
 
 class Refining:
@@ -73,15 +63,17 @@ class Refining:
             rows: M of them, stitched by `refine`, set to their new moments.
         """
         rows.guide_frames[...] = 0
-        rows.fallback[...] = Fallback.OTHER_RATE
+        rows.fallback[...] = np.where(
+            rows.past_uneven, FallbackReason.OTHER_RATE, FallbackReason.TOO_FEW_FRAMES
+        )
         known = np.flatnonzero(rows.past_frames >= PAST_FRAMES)
-        rows.fallback[known[MOST_A_TICK:]] = Fallback.BUSY
+        rows.fallback[known[MOST_A_TICK:]] = FallbackReason.BUSY
         known = known[:MOST_A_TICK]
         if not len(known):
             return
         said = self._refiner.refine(self._plans(rows.borrow(known)))
         near = said.distance <= self._refiner.furthest
-        rows.fallback[known] = np.where(near, Fallback.NONE, Fallback.UNLIKE_TRAINING)
+        rows.fallback[known] = np.where(near, _NO_FALLBACK, FallbackReason.UNLIKE_TRAINING)
         chosen, coming = known[near], slice(PAST_FRAMES, None)
         rows.guide_frames[chosen] = GUIDED_FRAMES
         rows.guide_planted[chosen] = said.planted[near, coming]
@@ -180,6 +172,7 @@ def remember(state: Characters, contacts: Flags, dt: Floats) -> None:
     even = np.abs(dt * FRAME_RATE - 1.0) < _EVEN
     count = np.where(even & ~far, np.minimum(state.past_frames + 1, PAST_FRAMES), 1)
     state.past_frames[...] = np.where(passed, count, state.past_frames)
+    state.past_uneven[...] = np.where(passed & (far | ~even), ~even, state.past_uneven)
     root = np.concatenate([state.root_position, state.root_yaw[:, None]], axis=1)
     for kept, new in (
         (state.past_root, root),
@@ -192,7 +185,14 @@ def remember(state: Characters, contacts: Flags, dt: Floats) -> None:
 
 def guided(state: Characters) -> Flags:
     """Tell who `(N,)` is guided now."""
-    return np.asarray(_frame(state, np.zeros(1))[:, 0] < state.guide_frames)
+    shown = _frame(state, np.zeros(1))[:, 0]
+    return np.asarray((shown >= 0) & (shown < state.guide_frames))
+
+
+def refined_frames(state: Characters) -> Indices:
+    """Return for how many frames `(N,)` feet were guided since the last transition."""
+    shown = _frame(state, np.zeros(1))[:, 0] + 1
+    return np.minimum(shown, state.guide_frames)
 
 
 def guide(state: Characters, sample: Sample) -> Sample:

@@ -127,7 +127,7 @@ class Session:
             contacts=to_mask(block.contacts[rows]),
             foot_targets=shown.foot_targets,
             flags=self._roster.take_flags()
-            | (block.fell_back[rows].astype(np.uint32) << np.uint32(FrameFlag.FALLBACK)),
+            | ((block.fallback[rows] > 0).astype(np.uint32) << np.uint32(FrameFlag.FALLBACK)),
             simulated_root=shown.simulated_root if detail >= Detail.COSTS else None,
             inside=look(crowd, self.rows, self._roster.scales) if detail is Detail.INSIDE else None,
             events=TickEvents(block, rows, ids, self._frame, detail, crowd.matcher, crowd.sets),

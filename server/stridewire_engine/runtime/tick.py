@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stridewire._messages import TransitionReason
+from stridewire._messages import FallbackReason, TransitionReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire.motion.skeleton import REFERENCE
@@ -73,8 +73,10 @@ class Block:
     jumps: Jumps | None
     """Who jumped; None if nobody searched."""
     timings_ms: dict[str, float]
-    fell_back: Flags
-    """`(N,)` who asked for `refine` and is stitched by `stance` instead."""
+    fallback: Indices
+    """`(N,)` why who asked for `refine` is stitched by `stance`: a `FallbackReason`, or 0."""
+    refined_frames: Indices
+    """`(N,)` for how many frames a network guided feet after the transition before the last."""
 
 
 class Tick:
@@ -105,6 +107,9 @@ class Tick:
         self._times = np.array(matcher.schema.trajectory_times)
         self._refining: refining.Refining | None = None
         refiner = refiner_if_shipped()
+        self._unrefined = (
+            FallbackReason.NO_NETWORK if refiner is None else FallbackReason.OTHER_SKELETON
+        )
         if refiner is not None and matcher.library.skeleton == REFERENCE:
             self._refining = refining.Refining(
                 matcher.library, self._tracks, self._legs, refiner, settings.root_halflife
@@ -224,6 +229,7 @@ class Tick:
         begins = jumps.reason == TransitionReason.START
         offsets.clear(begins)
         rows.root_offset[begins] = 0.0
+        rows.refined_frames[...] = refining.refined_frames(rows)
         # there is nothing to hide where a character begins
         rows.stitch_time[...] = np.where(begins, np.inf, 0.0)
         rows.stitched_by[...] = by
@@ -238,7 +244,7 @@ class Tick:
     def _ask(self, rows: Characters, refines: Flags) -> None:
         """Ask the network about those whose transition it is to refine."""
         rows.guide_frames[...] = 0
-        rows.fallback[...] = np.where(refines, refining.Fallback.NO_NETWORK, 0)
+        rows.fallback[...] = np.where(refines, self._unrefined, 0)
         mine = np.flatnonzero(refines)
         if len(mine) and self._refining is not None:
             part = rows.borrow(mine)
@@ -338,7 +344,8 @@ class Tick:
             entered,
             jumps,
             timings.elapsed_ms,
-            (state.fallback > 0) & (state.stitched_by == _REFINE),
+            np.where(state.stitched_by == _REFINE, state.fallback, 0),
+            state.refined_frames.copy(),
         )
 
 

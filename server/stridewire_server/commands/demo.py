@@ -31,6 +31,9 @@ SCRIPTS = ("walk-turn-stop", "circle", "stop-and-go", "u-turns")
 @click.option("--seconds", type=click.FloatRange(1.0), default=10.0, show_default=True)
 @click.option("--characters", type=click.IntRange(1, 256), default=4, show_default=True)
 @click.option(
+    "--stitcher", default="", help="What hides transitions; the server's default by default."
+)
+@click.option(
     "--out",
     type=click.Path(dir_okay=False, path_type=Path),
     default=Path("demo.bvh"),
@@ -46,7 +49,13 @@ SCRIPTS = ("walk-turn-stop", "circle", "stop-and-go", "u-turns")
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def demo(
-    library: Path | None, seconds: float, characters: int, out: Path, sheet: Path, as_json: bool
+    library: Path | None,
+    seconds: float,
+    characters: int,
+    stitcher: str,
+    out: Path,
+    sheet: Path,
+    as_json: bool,
 ) -> None:
     """Start a server, drive characters over gRPC at wall-clock 60 frames/s, show what came."""
     if not as_json:
@@ -54,7 +63,7 @@ def demo(
     with (
         serve(*([] if library is None else [library])) as address,
         Client(address) as client,
-        client.open_session(spread_out(characters)) as session,
+        client.open_session(spread_out(characters, stitcher)) as session,
     ):
         run = drive_with_progress(
             session,

@@ -43,6 +43,7 @@ def replay(captured: Captured) -> Callable[[str], Stream]:
             np.full(rows.shape, 1000),
             np.full((*rows.shape, 2, 3), np.nan),
             np.zeros((*rows.shape, 4)),
+            np.zeros(rows.shape, bool),
             # as long as the way really is, so that what is asked is what is done
             Wanted(np.concatenate([velocity[:1], velocity[:-1]]), np.full(rows.shape, np.nan)),
             Seams(none, none, none),

@@ -3,12 +3,23 @@
 import numpy as np
 import pytest
 
-from stridewire._messages import CharacterSpec, Frame, FrameFlag, GroundPose, Open, Step
+from stridewire._messages import (
+    CharacterSpec,
+    Detail,
+    FallbackReason,
+    Frame,
+    FrameFlag,
+    GroundPose,
+    Open,
+    Step,
+    Transition,
+    TransitionReason,
+)
 from stridewire_engine.library import Library
 from stridewire_engine.networks.rmr import Guidance, Plans
 from stridewire_engine.runtime import Runtime
 from stridewire_engine.runtime.characters import GUIDED_FRAMES, PAST_FRAMES
-from stridewire_engine.runtime.refining import MOST_A_TICK, Fallback
+from stridewire_engine.runtime.refining import MOST_A_TICK
 
 
 class StandIn:
@@ -43,7 +54,7 @@ def walk(
     assert tick._refining is not None
     tick._refining._refiner = network  # type: ignore[assignment]
     specs = [CharacterSpec(i, GroundPose((3.0 * i, 0, 0)), stitcher=stitcher) for i in range(count)]
-    session = runtime.open(Open(specs, seed=5))
+    session = runtime.open(Open(specs, seed=5, detail=Detail.EVENTS))
     frames = []
     for i in range(round(seconds / dt)):
         velocity = np.tile([[0.0, 1.4]] if i * dt < seconds / 2 else [[1.4, 0.0]], (count, 1))
@@ -55,6 +66,16 @@ def walk(
 def fallbacks(frames: list[Frame]) -> int:
     """Count the frames in which somebody fell back."""
     return sum(len(frame.flagged(FrameFlag.FALLBACK)) > 0 for frame in frames)
+
+
+def transitions(frames: list[Frame]) -> list[Transition]:
+    """Return the transitions, beginnings not among them."""
+    return [
+        event
+        for frame in frames
+        for event in frame.events
+        if isinstance(event, Transition) and event.reason is not TransitionReason.START
+    ]
 
 
 def test_the_network_is_asked_at_transitions(small_library: Library) -> None:
@@ -86,17 +107,19 @@ def test_what_it_says_moves_feet_and_no_sent_frame(small_library: Library) -> No
 @pytest.mark.parametrize(
     ("network", "dt", "why"),
     [
-        (StandIn(distance=3.0), 1 / 60, Fallback.UNLIKE_TRAINING),
-        (StandIn(), 1 / 30, Fallback.OTHER_RATE),
+        (StandIn(distance=3.0), 1 / 60, FallbackReason.UNLIKE_TRAINING),
+        (StandIn(), 1 / 30, FallbackReason.OTHER_RATE),
     ],
 )
 def test_who_cannot_be_refined_falls_back(
-    small_library: Library, network: StandIn, dt: float, why: Fallback
+    small_library: Library, network: StandIn, dt: float, why: FallbackReason
 ) -> None:
     """Stitched by stance, flagged in the frames, and the reason is kept."""
-    frames, runtime = walk(small_library, network, dt=dt)
+    frames, _ = walk(small_library, network, dt=dt)
     assert fallbacks(frames)
-    assert why in runtime._crowd("").state.fallback
+    told = {jump.fallback for jump in transitions(frames)}
+    assert why in told
+    assert told <= {why, None, FallbackReason.TOO_FEW_FRAMES}
     plain, _ = walk(small_library, network, dt=dt, stitcher="stance")
     np.testing.assert_allclose(frames[-1].rotations, plain[-1].rotations, atol=1e-5)
 
@@ -107,3 +130,29 @@ def test_a_tick_refines_no_more_than_it_may(small_library: Library) -> None:
     frames, _ = walk(small_library, network, count=2 * MOST_A_TICK, seconds=1.0)
     assert max(len(plans) for plans in network.asked) == MOST_A_TICK
     assert max(len(frame.flagged(FrameFlag.FALLBACK)) for frame in frames) == MOST_A_TICK
+
+
+def test_a_transition_tells_how_long_the_one_before_was_refined(small_library: Library) -> None:
+    """As many frames as passed, at most 52; after the beginning none."""
+    frames, _ = walk(small_library, StandIn(), count=1)
+    jumps = transitions(frames)
+    first, *later = jumps
+    assert first.refined_frames == 0
+    apart = np.diff([jump.frame for jump in jumps])
+    assert later
+    assert [j.refined_frames for j in later] == np.minimum(apart, GUIDED_FRAMES).tolist()
+
+
+def test_an_absent_network_is_told(small_library: Library, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a network, transitions say so."""
+    monkeypatch.setattr("stridewire_engine.runtime.tick.refiner_if_shipped", lambda: None)
+    runtime = Runtime([small_library], clock=lambda: 0.0)
+    session = runtime.open(
+        Open([CharacterSpec(0, stitcher="refine")], seed=5, detail=Detail.EVENTS)
+    )
+    frames = []
+    for i in range(120):
+        step = Step(i, 1 / 60, velocity_xz=np.array([[0.0, 1.4 if i < 60 else -1.4]]))
+        ((frame, _),) = runtime.advance([(session, step)])
+        frames.append(frame)
+    assert {jump.fallback for jump in transitions(frames)} == {FallbackReason.NO_NETWORK}
