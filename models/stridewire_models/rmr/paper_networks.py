@@ -25,6 +25,7 @@ Cell = Literal["bgru", "blstm", "gru", "lstm"]
 CELLS: tuple[Cell, ...] = ("bgru", "blstm", "gru", "lstm")
 _LAYERS = 2
 _DROPOUT = 0.5
+_LEAK = 0.1
 _LABEL_LOGIT = 2.0
 _LEAST = ((ROOT, 1e-3), (POINTS, 0.01), (ROTATIONS, 0.05), (VELOCITIES, 0.05))
 """Deviations below which numbers count as still, and are not blown up."""
@@ -59,7 +60,9 @@ class PaperNetwork(nn.Module):
             width, width, _LAYERS, batch_first=True, bidirectional=both, dropout=_DROPOUT
         )
         last = nn.Linear(width, TOKEN * NUMBERS)
-        self.decoder = nn.Sequential(nn.Linear((1 + both) * width, width), nn.ReLU(), last)
+        # what is to be added is 0 before the seam: that would silence the paper's ReLU for good
+        bent = nn.LeakyReLU(_LEAK)
+        self.decoder = nn.Sequential(nn.Linear((1 + both) * width, width), bent, last)
         nn.init.zeros_(last.weight)
         nn.init.zeros_(last.bias)
 

@@ -14,6 +14,8 @@ class Recipe:
     batch: int
     """Pairs a step."""
     learning_rate: float
+    warm: float
+    """Share of the steps that the rate rises."""
     last_rate: float
     """Share of the learning rate at the end, to which a cosine falls; 1 keeps it."""
     weight_decay: float
@@ -48,8 +50,10 @@ class PaperRecipe(Recipe):
     """Weight of the loss of the root's path; the paper's is 1."""
 
 
-STEPS = StepsRecipe("steps", 4_000, 96, 1e-3, 0.02, 1e-4, 0.998, 4_000, 400, 40, 0.4)
+STEPS = StepsRecipe("steps", 4_000, 96, 1e-3, 0.02, 0.02, 1e-4, 0.998, 4_000, 400, 40, 0.4)
 """Within an hour of one thread."""
-# a rate that stays makes networks comparable at any step
-PAPER = PaperRecipe("paper", 3_200, 32, 1e-3, 1.0, 0.0, 0.99, 3_400, 600, 10, "bgru", 128, 5, 1.0)
+# a rate that stays makes networks comparable at any step; one that rises fast stops all learning
+PAPER = PaperRecipe(
+    "paper", 3_200, 32, 1e-3, 0.3, 1.0, 0.0, 0.99, 3_400, 600, 10, "bgru", 128, 5, 1.0
+)  # fmt: skip
 """Three minutes of one thread, where the paper has 5,000 rounds of 3,435 pairs."""

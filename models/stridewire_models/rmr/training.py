@@ -15,7 +15,6 @@ from stridewire_models.rmr.recipes import Recipe
 from stridewire_models.run_folder import RunFolder, running_mean
 
 _SAVE_EVERY_S = 300.0
-_WARM = 0.02
 
 
 class Task(Protocol):
@@ -129,7 +128,7 @@ class Run:
         part = step / self.recipe.steps
         last = self.recipe.last_rate
         fall = last + (1.0 - last) * 0.5 * (1.0 + math.cos(math.pi * min(part, 1.0)))
-        return min(part / _WARM, 1.0) * fall if part < _WARM else fall
+        return min(part / self.recipe.warm, 1.0) * fall
 
     def _save(self) -> None:
         self._files.save(
