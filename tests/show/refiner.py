@@ -2,6 +2,7 @@
 
 import sys
 
+import refiner_paper
 import refiner_tables
 import stitch_service
 from points import show
@@ -20,6 +21,7 @@ if __name__ == "__main__":
                 refiner_tables.lafan1,
                 refiner_tables.lafan1_smoothed,
                 refiner_tables.cost,
+                refiner_paper.paper,
             ],
         )
     )

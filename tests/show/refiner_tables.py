@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -81,19 +82,19 @@ def cost() -> Iterator[Point]:
 
 
 def _points(name: str, path: str) -> Iterator[Point]:
-    table = _evaluated(name, path)
+    table = evaluated(name, path)
     refine, quintic = table["refine"], table["quintic"]
     where = f"{name}, {path} path"
     for title, figure, bar, most in _RATIOS:
         value = refine[f"{figure}_of_spring"]
         passed = value < most if bar.startswith("below") else value <= most
-        yield Point(f"{where}: {title}", _spread(refine, f"{figure}_of_spring"), bar, passed)
+        yield Point(f"{where}: {title}", spread(refine, f"{figure}_of_spring"), bar, passed)
     for title, figure in (("sliding C", "sliding_c_cm_s"), ("sliding A", "sliding_a_cm_s")):
         for other in ("stance", "spring-lock"):
             apart = refine[f"{figure}_high"] < table[other][f"{figure}_low"]
-            told = f"{_spread(refine, figure)} cm/s, {other} {_spread(table[other], figure)}"
+            told = f"{spread(refine, figure)} cm/s, {other} {spread(table[other], figure)}"
             yield Point(f"{where}: {title} beside {other}", told, "below, intervals apart", apart)
-        of_stance = _spread(refine, f"{figure}_of_stance")
+        of_stance = spread(refine, f"{figure}_of_stance")
         yield Point(f"{where}: {title}, of stance's on the same takes", of_stance)
     told = f"{refine['npss']:.3f}, quintic {quintic['npss']:.3f}"
     better = refine["npss"] <= quintic["npss"]
@@ -105,7 +106,9 @@ def _points(name: str, path: str) -> Iterator[Point]:
         yield Point(f"{where}: {title} without the network's answer", told, "worse", worse)
 
 
-def _evaluated(name: str, path: str) -> dict[str, dict[str, Any]]:
+@cache
+def evaluated(name: str, path: str) -> dict[str, dict[str, Any]]:
+    """Return the rows of `evaluate stitch` on test subjects, by method."""
     command = (
         sys.executable, "-m", "stridewire", "evaluate", "stitch", "--data", str(capture()),
         "--set", name, "--path", path, "--stride", str(_STRIDES[name]), "--json",
@@ -114,7 +117,8 @@ def _evaluated(name: str, path: str) -> dict[str, dict[str, Any]]:
     return {row["method"]: row for row in json.loads(done.stdout)["rows"]}
 
 
-def _spread(row: dict[str, Any], key: str) -> str:
+def spread(row: dict[str, Any], key: str) -> str:
+    """Return a figure with its interval."""
     return f"{row[key]:.3g} ({row[f'{key}_low']:.3g} … {row[f'{key}_high']:.3g})"
 
 
