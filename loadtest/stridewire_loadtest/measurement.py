@@ -101,6 +101,8 @@ class Measured:
             **_percentiles(tally.ticks, "tick_", ("p50", "p99")),
             **_percentiles(tally.queries, "query_", ("p50", "p99")),
             "transitions_per_s": _per_character_s(tally, tally.counts["transitions"]),
+            "refined_pct": _refined_pct(tally),
+            "search_interval_ms": _interval_ms(tally),
             "fallback_pct": _share(tally.counts["FRAME_FLAG_FALLBACK"], tally.characters_frames),
             "degraded_pct": _share(tally.counts["FRAME_FLAG_DEGRADED"], tally.characters_frames),
             "server_cpu_cores": cores,
@@ -160,7 +162,17 @@ def _percentiles(histogram: Any, prefix: str, names: Sequence[str]) -> dict[str,
 
 
 def _per_character_s(tally: Tally, count: int) -> float:
-    return count * RATE_HZ / max(1, tally.characters_frames)
+    return count * RATE_HZ / max(1, tally.counts["character_ticks"])
+
+
+def _interval_ms(tally: Tally) -> float:
+    """Return the mean time between a character's searches."""
+    return 1e3 * tally.counts["character_ticks"] / RATE_HZ / max(1, tally.counts["searches"])
+
+
+def _refined_pct(tally: Tally) -> float:
+    """Return the share of transitions over which a network guided feet; see `refined_share`."""
+    return _share(tally.counts["refined"], tally.counts["ended"])
 
 
 def _share(part: float, whole: float) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from grpc.aio import EOF  # type: ignore[attr-defined]
 
 from stridewire._codec.blocks import write_blocks
+from stridewire.refined_share import REFINED_FRAMES
 from stridewire.scripts import script
 from stridewire.v1 import animation_pb2 as pb
 from stridewire_loadtest.scenarios import FRAME_S, RATE_HZ
@@ -88,6 +89,7 @@ class DrivenStream:
         self._plan = plan
         self._tally = tally
         self._controls = plan.controls()
+        self._jumped: set[int] = set()
         self._sent = np.zeros(plan.steps + 1)
         self._last_frame = 0
         self._applied = 0
@@ -170,10 +172,10 @@ class DrivenStream:
         tally.characters_frames += plan.characters
         elapsed_ms = sum(timing.elapsed_ms for timing in frame.timings)
         tally.ticks.record_value(max(1, round(1e3 * elapsed_ms)))
-        for event in frame.events:
-            if event.HasField("transition"):
-                started = event.transition.reason == pb.TRANSITION_REASON_START
-                tally.counts["starts" if started else "transitions"] += 1
+        # what dropped frames told, this one tells
+        tally.counts["character_ticks"] += plan.characters * (1 + frame.dropped)
+        tally.counts["searches"] += frame.searches
+        self._take_transitions(frame)
         for flag in (pb.FRAME_FLAG_DEGRADED, pb.FRAME_FLAG_FALLBACK):
             bits = 1 << flag
             hit = sum(1 for flags in frame.flags if flags & bits)
@@ -181,6 +183,20 @@ class DrivenStream:
                 tally.counts[pb.FrameFlag.Name(flag)] += hit
         if step % _HASH_EVERY == 0:
             tally.poses.setdefault(step, []).extend(_hashes(frame, plan.characters))
+
+    def _take_transitions(self, frame: pb.Frame) -> None:
+        """Count transitions; whether one was refined, the character's next one tells."""
+        counts = self._tally.counts
+        for event in frame.events:
+            if not event.HasField("transition"):
+                continue
+            started = event.transition.reason == pb.TRANSITION_REASON_START
+            counts["starts" if started else "transitions"] += 1
+            if event.character in self._jumped:
+                counts["ended"] += 1
+                counts["refined"] += event.transition.refined_frames >= REFINED_FRAMES
+            if not started:
+                self._jumped.add(event.character)
 
 
 def _hashes(frame: pb.Frame, characters: int) -> list[bytes]:

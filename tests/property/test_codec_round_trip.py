@@ -239,6 +239,7 @@ def frames(draw: st.DrawFn) -> Frame:
         inside=draw(st.none() | insides(count, joints)),
         events=tuple(draw(st.lists(events, max_size=3))),
         dropped=draw(uint),
+        searches=draw(uint),
         timings_ms=draw(weights),
     )
 

@@ -80,6 +80,7 @@ def _encode_frame(frame: Frame) -> pb.Frame:
         events=map(encode_event, frame.events),
         flags=frame.flags.tolist(),
         dropped=frame.dropped,
+        searches=frame.searches,
         timings=(
             pb.StageTiming(stage=stage, elapsed_ms=elapsed)
             for stage, elapsed in frame.timings_ms.items()
@@ -137,6 +138,7 @@ def _decode_frame(wire: pb.Frame) -> Frame:
         inside=_decode_inside(wire, count) if wire.ahead_s else None,
         events=tuple(map(decode_event, wire.events)),
         dropped=wire.dropped,
+        searches=wire.searches,
         timings_ms={timing.stage: timing.elapsed_ms for timing in wire.timings},
         format=PoseFormat.F16 if halves else PoseFormat.F32,
     )

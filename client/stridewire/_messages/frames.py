@@ -153,6 +153,8 @@ class Frame:
     """Only with `Detail.INSIDE`."""
     events: Sequence[Event] = ()
     dropped: int = 0
+    searches: int = 0
+    """Characters that searched in this tick."""
     timings_ms: Mapping[str, float] = field(default_factory=dict)
     format: PoseFormat = PoseFormat.F32
     """How the frame travels; arrays are float32 all the same."""

@@ -350,7 +350,7 @@ class Limits(_message.Message):
     def __init__(self, max_characters: _Optional[int] = ..., max_dt_s: _Optional[float] = ..., max_speed: _Optional[float] = ..., max_message_bytes: _Optional[int] = ..., write_timeout_s: _Optional[float] = ...) -> None: ...
 
 class Frame(_message.Message):
-    __slots__ = ("frame", "applied_step", "time_s", "client_time_s", "characters", "root", "root_delta", "hips", "rotations", "contacts", "foot_targets", "simulated_root", "events", "flags", "dropped", "timings", "root_f16", "root_delta_f16", "hips_f16", "rotations_f16", "ahead_s", "predicted", "captured", "sampled_hips", "sampled_rotations")
+    __slots__ = ("frame", "applied_step", "time_s", "client_time_s", "characters", "root", "root_delta", "hips", "rotations", "contacts", "foot_targets", "simulated_root", "events", "flags", "dropped", "timings", "root_f16", "root_delta_f16", "hips_f16", "rotations_f16", "ahead_s", "predicted", "captured", "sampled_hips", "sampled_rotations", "searches")
     FRAME_FIELD_NUMBER: _ClassVar[int]
     APPLIED_STEP_FIELD_NUMBER: _ClassVar[int]
     TIME_S_FIELD_NUMBER: _ClassVar[int]
@@ -376,6 +376,7 @@ class Frame(_message.Message):
     CAPTURED_FIELD_NUMBER: _ClassVar[int]
     SAMPLED_HIPS_FIELD_NUMBER: _ClassVar[int]
     SAMPLED_ROTATIONS_FIELD_NUMBER: _ClassVar[int]
+    SEARCHES_FIELD_NUMBER: _ClassVar[int]
     frame: int
     applied_step: int
     time_s: float
@@ -401,7 +402,8 @@ class Frame(_message.Message):
     captured: _containers.RepeatedScalarFieldContainer[float]
     sampled_hips: _containers.RepeatedScalarFieldContainer[float]
     sampled_rotations: _containers.RepeatedScalarFieldContainer[float]
-    def __init__(self, frame: _Optional[int] = ..., applied_step: _Optional[int] = ..., time_s: _Optional[float] = ..., client_time_s: _Optional[float] = ..., characters: _Optional[_Iterable[int]] = ..., root: _Optional[_Iterable[float]] = ..., root_delta: _Optional[_Iterable[float]] = ..., hips: _Optional[_Iterable[float]] = ..., rotations: _Optional[_Iterable[float]] = ..., contacts: _Optional[_Iterable[int]] = ..., foot_targets: _Optional[_Iterable[float]] = ..., simulated_root: _Optional[_Iterable[float]] = ..., events: _Optional[_Iterable[_Union[Event, _Mapping]]] = ..., flags: _Optional[_Iterable[int]] = ..., dropped: _Optional[int] = ..., timings: _Optional[_Iterable[_Union[StageTiming, _Mapping]]] = ..., root_f16: _Optional[bytes] = ..., root_delta_f16: _Optional[bytes] = ..., hips_f16: _Optional[bytes] = ..., rotations_f16: _Optional[bytes] = ..., ahead_s: _Optional[_Iterable[float]] = ..., predicted: _Optional[_Iterable[float]] = ..., captured: _Optional[_Iterable[float]] = ..., sampled_hips: _Optional[_Iterable[float]] = ..., sampled_rotations: _Optional[_Iterable[float]] = ...) -> None: ...
+    searches: int
+    def __init__(self, frame: _Optional[int] = ..., applied_step: _Optional[int] = ..., time_s: _Optional[float] = ..., client_time_s: _Optional[float] = ..., characters: _Optional[_Iterable[int]] = ..., root: _Optional[_Iterable[float]] = ..., root_delta: _Optional[_Iterable[float]] = ..., hips: _Optional[_Iterable[float]] = ..., rotations: _Optional[_Iterable[float]] = ..., contacts: _Optional[_Iterable[int]] = ..., foot_targets: _Optional[_Iterable[float]] = ..., simulated_root: _Optional[_Iterable[float]] = ..., events: _Optional[_Iterable[_Union[Event, _Mapping]]] = ..., flags: _Optional[_Iterable[int]] = ..., dropped: _Optional[int] = ..., timings: _Optional[_Iterable[_Union[StageTiming, _Mapping]]] = ..., root_f16: _Optional[bytes] = ..., root_delta_f16: _Optional[bytes] = ..., hips_f16: _Optional[bytes] = ..., rotations_f16: _Optional[bytes] = ..., ahead_s: _Optional[_Iterable[float]] = ..., predicted: _Optional[_Iterable[float]] = ..., captured: _Optional[_Iterable[float]] = ..., sampled_hips: _Optional[_Iterable[float]] = ..., sampled_rotations: _Optional[_Iterable[float]] = ..., searches: _Optional[int] = ...) -> None: ...
 
 class Event(_message.Message):
     __slots__ = ("character", "frame", "transition", "contact", "clip_end", "tag_entered")

@@ -24,6 +24,8 @@ _COLUMNS = (
     "tick_p50_ms",
     "tick_p99_ms",
     "transitions_per_s",
+    "refined_pct",
+    "search_interval_ms",
     "server_cpu_cores",
     "server_rss_mb",
     "generator_late_pct",

@@ -67,7 +67,8 @@ class _NaiveTick:
         nothing = np.full((len(state), 2, 3), np.nan)
         return Block(
             root, motion, hips, rotations, contacts, contacts, nothing,
-            np.zeros((len(state), 4)), np.zeros(len(state), np.uint64), jumps, {},
+            np.zeros((len(state), 4)), np.zeros(len(state), np.uint64), jumps,
+            np.ones(len(state), np.bool_), {},
             np.zeros(len(state), np.int8), np.zeros(len(state), np.int8),
         )  # fmt: skip
 

@@ -131,6 +131,7 @@ class Session:
             simulated_root=shown.simulated_root if detail >= Detail.COSTS else None,
             inside=look(crowd, self.rows, self._roster.scales) if detail is Detail.INSIDE else None,
             events=TickEvents(block, rows, ids, self._frame, detail, crowd.matcher, crowd.sets),
+            searches=int(np.count_nonzero(block.searched[rows])),
             timings_ms=block.timings_ms,
             format=self.opened.settings.format,
         )

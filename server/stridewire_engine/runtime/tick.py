@@ -72,6 +72,8 @@ class Block:
     """`(N,)` uint64 bits of the library's tags."""
     jumps: Jumps | None
     """Who jumped; None if nobody searched."""
+    searched: Flags
+    """`(N,)` who searched."""
     timings_ms: dict[str, float]
     fallback: Indices
     """`(N,)` why who asked for `refine` is stitched by `stance`: a `FallbackReason`, or 0."""
@@ -177,7 +179,8 @@ class Tick:
             state.put(rows, told)
         delta[:, 1] += state.terrain[:, 0] - before_lift
         timings.note("feet")
-        return self._block(state, delta, hips, rotations, contacts, after, jumps, timings)
+        searched = reason > 0
+        return self._block(state, delta, hips, rotations, contacts, after, jumps, searched, timings)
 
     def consider(
         self, state: Characters, dt: Floats, sets: Sets
@@ -311,6 +314,7 @@ class Tick:
         contacts: Flags,
         after: sampling.Moments,
         jumps: Jumps | None,
+        searched: Flags,
         timings: "_Timings",
     ) -> Block:
         bits = self._matcher.library.tag_bits[after.nearest]
@@ -343,6 +347,7 @@ class Tick:
             simulated.astype(np.float32),
             entered,
             jumps,
+            searched,
             timings.elapsed_ms,
             np.where(state.stitched_by == _REFINE, state.fallback, 0),
             state.refined_frames.copy(),

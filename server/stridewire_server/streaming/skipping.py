@@ -30,6 +30,7 @@ def skip(skipped: Frame, newer: Frame) -> Frame:
         flags=flags,
         events=(*skipped.events, *newer.events)[-MAX_EVENTS:],
         dropped=newer.dropped + skipped.dropped + 1,
+        searches=newer.searches + skipped.searches,
     )
 
 
