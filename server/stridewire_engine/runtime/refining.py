@@ -2,8 +2,9 @@
 
 What it is asked about is a plan: the last frames that were shown, and the coming ones of the clip
 that was jumped to, springs over the seam. Frames that were sent never change; what the network
-says fades out at the plan's end. Turns of feet are left alone: the next transition would drop them
-within a frame, which jerks knees.
+says fades out at the plan's end. A clip on its own path has the labels that count, so that the
+network adds to them and leads swings but half of its way. Turns of feet are left alone: the next
+transition would drop them within a frame, which jerks knees.
 """
 
 import numpy as np
@@ -12,7 +13,7 @@ from stridewire._messages import FallbackReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Vectors
 from stridewire_engine.library import Library
-from stridewire_engine.networks.rmr import Plans, Refiner
+from stridewire_engine.networks.rmr import Guidance, Plans, Refiner
 from stridewire_engine.networks.rmr.plans import FRAME_RATE, WINDOW
 from stridewire_engine.runtime import sampling
 from stridewire_engine.runtime.characters import GUIDED_FRAMES, PAST_FRAMES, Characters
@@ -24,6 +25,8 @@ from stridewire_engine.stitchers.stitcher import turn_to_root, turn_to_world
 
 MOST_A_TICK = 16
 """Transitions that are refined in one tick; a count, so that a replay decides alike."""
+_LED = 0.5
+"""Share of the offsets that swings are led by; all of them jerk knees."""
 _LOWER = 9
 """The reference's first joints: hips and legs."""
 _HALFLIFE = 0.1
@@ -71,7 +74,8 @@ class Refining:
         known = known[:MOST_A_TICK]
         if not len(known):
             return
-        said = self._refiner.refine(self._plans(rows.borrow(known)))
+        plans = self._plans(rows.borrow(known))
+        said = followed(plans, self._refiner.refine(plans))
         near = said.distance <= self._refiner.furthest
         rows.fallback[known] = np.where(near, _NO_FALLBACK, FallbackReason.UNLIKE_TRAINING)
         chosen, coming = known[near], slice(PAST_FRAMES, None)
@@ -157,6 +161,12 @@ class Refining:
             quaternion.absolute(quaternion.multiply(shown, back))
         )
         return off
+
+
+def followed(plans: Plans, said: Guidance) -> Guidance:
+    """Return what is followed of what the network said about clips on their own path."""
+    planted = np.maximum(said.planted, plans.contacts)
+    return said._replace(planted=planted, toe_offset=_LED * said.toe_offset)
 
 
 def remember(state: Characters, contacts: Flags, dt: Floats) -> None:

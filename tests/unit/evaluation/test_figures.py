@@ -9,7 +9,7 @@ import pytest
 from stridewire.motion.clip import Pose
 from stridewire_engine.evaluation.captured import TOES, Captured
 from stridewire_engine.evaluation.figures import Figures, Judged
-from stridewire_engine.evaluation.streaming import Stream
+from stridewire_engine.evaluation.streaming import Seams, Stream
 from stridewire_engine.evaluation.tally import interval
 
 WALK = "walk-1.4"
@@ -80,3 +80,20 @@ def test_known_sliding_is_found_under_the_labels(captured: Captured, replay: Rep
         30.0, abs=value(source, "sliding_c_cm_s") + 0.1
     )
     assert value(streamed, "skating_pct") == pytest.approx(100.0)
+
+
+def test_a_transition_is_refined_if_it_was_guided_for_eight_frames(
+    captured: Captured, replay: Replay
+) -> None:
+    """Of five: one guided, one cut off after seven frames, one not guided, two more guided."""
+    stream = replay(WALK)
+    frames = np.array([20, 40, 47, 80, 100])
+    since = np.full(stream.since.shape, 1000)
+    for frame in frames:
+        since[frame:, 0] = np.arange(len(since) - frame)
+    led = np.ones(since.shape, bool)
+    led[47:80] = False
+    seams = Seams(frames, np.zeros(5, int), stream.rows[frames - 1, 0])
+    streamed, _ = judged(replace(stream, since=since, refined=led, seams=seams), captured)
+    assert value(streamed, "refined_pct") == pytest.approx(60.0)
+    assert np.isnan(value(judged(stream, captured)[0], "refined_pct"))

@@ -8,8 +8,10 @@ from stridewire_engine.evaluation.seam_methods import plain_methods
 from stridewire_engine.evaluation.seams import Poses, Windows, stitched
 from stridewire_engine.evaluation.stitch_figures import Figures, Judge
 from stridewire_engine.evaluation.stitch_table import rows
-from stridewire_engine.networks.rmr import Guidance
+from stridewire_engine.networks.rmr import Guidance, Plans, shipped_refiner
 from stridewire_engine.networks.rmr.assembly import assemble
+from stridewire_engine.networks.rmr.features import inputs
+from stridewire_engine.networks.rmr.guidance import guidance
 from stridewire_engine.networks.rmr.takes import Takes
 from stridewire_engine.stitchers.stance import Stance
 
@@ -34,6 +36,14 @@ def told(windows: Windows) -> Poses:
     said = Guidance(
         true, made.truth.toes - made.clip.toes, np.zeros(made.truth.toes.shape), np.ones(len(pairs))
     )
+    return stitched(windows, Stance(), said)
+
+
+def says(windows: Windows, loudness: float) -> Poses:
+    """Guide stance by the network that ships, its output times `loudness`."""
+    plans: Plans = assemble(windows.takes, windows.pairs, (windows.root, windows.yaw)).plans
+    curves, contacts, distance = shipped_refiner().model.run(inputs(plans))
+    said = guidance(plans, loudness * curves, loudness * contacts, distance)
     return stitched(windows, Stance(), said)
 
 
@@ -87,3 +97,10 @@ def test_a_smoothed_path_is_another_path(judge: Judge) -> None:
     windows, others = next(judge.windows()), next(smoothed.windows())
     away = np.linalg.norm(windows.root - others.root, axis=-1)
     assert 1e-4 < away.mean() < 0.15
+
+
+def test_feet_fare_worse_when_the_network_falls_silent(judge: Judge) -> None:
+    """Its output at zero, they slide more and are further from where the actor's were."""
+    spoken, silent = (judge.measure(lambda w, k=k: says(w, k)) for k in (1.0, 0.0))
+    for name, most in (("sliding_c_cm_s", 0.5), ("foot_error_cm", 0.8), ("position_error_cm", 0.9)):
+        assert value(spoken, name) < most * value(silent, name)

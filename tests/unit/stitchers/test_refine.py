@@ -1,5 +1,7 @@
 """The stitcher `refine`, live: the network guides feet after transitions, or it is told why not."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -16,10 +18,12 @@ from stridewire._messages import (
     TransitionReason,
 )
 from stridewire_engine.library import Library
-from stridewire_engine.networks.rmr import Guidance, Plans
+from stridewire_engine.networks import onnx_model
+from stridewire_engine.networks.onnx_model import ModelError
+from stridewire_engine.networks.rmr import Guidance, Plans, shipped_refiner
 from stridewire_engine.runtime import Runtime
 from stridewire_engine.runtime.characters import GUIDED_FRAMES, PAST_FRAMES
-from stridewire_engine.runtime.refining import MOST_A_TICK
+from stridewire_engine.runtime.refining import MOST_A_TICK, followed
 
 
 class StandIn:
@@ -156,3 +160,32 @@ def test_an_absent_network_is_told(small_library: Library, monkeypatch: pytest.M
         ((frame, _),) = runtime.advance([(session, step)])
         frames.append(frame)
     assert {jump.fallback for jump in transitions(frames)} == {FallbackReason.NO_NETWORK}
+
+
+def test_labels_hold_and_swings_are_led_half_way(small_library: Library) -> None:
+    """What the network says of a clip on its own path is followed in part."""
+    network = StandIn(offset=0.2)
+    walk(small_library, network, count=1, seconds=1.0)
+    plans = network.asked[0]
+    said = network.refine(plans)
+    told = followed(plans, said._replace(planted=np.zeros(said.planted.shape)))
+    np.testing.assert_array_equal(told.planted, plans.contacts)
+    np.testing.assert_allclose(told.toe_offset, 0.5 * said.toe_offset)
+
+
+@pytest.mark.parametrize("what", ["missing", "altered"])
+def test_a_bad_network_is_told_at_the_start(
+    small_library: Library, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str
+) -> None:
+    """Not at the first transition: no runtime begins, and the file is named."""
+    shipped = Path(str(onnx_model.files(onnx_model.WEIGHTS)))
+    (tmp_path / onnx_model.SUMS).write_bytes((shipped / onnx_model.SUMS).read_bytes())
+    if what == "altered":
+        (tmp_path / "rmr.onnx").write_bytes((shipped / "rmr.onnx").read_bytes() + b" ")
+    monkeypatch.setattr(onnx_model, "files", lambda package: tmp_path)
+    shipped_refiner.cache_clear()
+    try:
+        with pytest.raises(ModelError, match=r"rmr\.onnx"):
+            Runtime([small_library])
+    finally:
+        shipped_refiner.cache_clear()
