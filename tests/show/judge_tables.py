@@ -29,13 +29,12 @@ def natural(rows: list[Row], library: str) -> Iterator[str]:
     heads = " | ".join(head for head, *_ in COLUMNS)
     yield f"`{library}`:\n\n| | {heads} |\n|{'---|' * (len(COLUMNS) + 1)}"
     mine = [row for row in rows if row.get("library") == library and _is_natural(row)]
-    order = {"captured": 0, "naive": 1, "streamed": 2}
     # of the captured rows any will do: it is of the frames that one stitcher played
-    captured = [row for row in mine if row["row"] == "captured"][:1]
-    for row in sorted(
-        captured + [row for row in mine if row["row"] != "captured"], key=lambda r: order[r["row"]]
-    ):
-        yield f"| {_name(row)} | " + " | ".join(_cell(row, *column[1:]) for column in COLUMNS) + " |"
+    parts = {kind: [row for row in mine if row["row"] == kind] for kind in ("captured", "naive")}
+    streamed = [row for row in mine if row["row"] == "streamed"]
+    for row in (*parts["captured"][:1], *parts["naive"], *streamed):
+        cells = " | ".join(_cell(row, *column[1:]) for column in COLUMNS)
+        yield f"| {_name(row)} | {cells} |"
 
 
 def _is_natural(row: Row) -> bool:
