@@ -2,7 +2,10 @@
 
 import sys
 
+import refiner_live
 import refiner_paper
+import refiner_remedies
+import refiner_sheets
 import refiner_tables
 import stitch_service
 from points import show
@@ -22,6 +25,11 @@ if __name__ == "__main__":
                 refiner_tables.lafan1_smoothed,
                 refiner_tables.cost,
                 refiner_paper.paper,
+                refiner_live.live,
+                refiner_live.live_critic,
+                refiner_remedies.remedies,
+                refiner_remedies.tick_cost,
+                refiner_sheets.sheets,
             ],
         )
     )
