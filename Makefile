@@ -9,7 +9,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 STRIDEWIRE_DATA ?= $(abspath ../shared/data)
 export STRIDEWIRE_DATA PROTO_VENV
 
-.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge show-page show-refiner page page-pictures site pictures reference image clean help
+.PHONY: demo test lint proto show-blend show-spine show-search show-import show-gait show-surface show-judge show-page show-refiner show-capacity show-soak page page-pictures site pictures reference image clean help
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -71,6 +71,12 @@ page: ## bundle the page of `stridewire play` anew after a change in its sources
 
 show-refiner: $(VENV)/.dev ## check what stitching claims, as a service and by its network
 	$(BIN)/python tests/show/refiner.py $(SHOW)
+
+show-capacity: $(VENV)/.dev ## check how much two cores hold; wants a machine that does nothing else
+	$(BIN)/python tests/show/capacity.py $(SHOW)
+
+show-soak: $(VENV)/.dev ## check twenty minutes near capacity; wants a machine that does nothing else
+	$(BIN)/python tests/show/soak.py $(SHOW)
 
 reference: $(VENV)/.dev ## write docs/reference.md anew after a change in proto/ or a command
 	$(BIN)/python tests/docs/reference.py > docs/reference.md

@@ -95,10 +95,13 @@ class Measured:
             "frames": tally.received,
             "fps": tally.received / load.seconds / asked.streams,
             "late_pct": 100.0 * (tally.late + expected - tally.received) / expected,
+            "late_trend_pct": _trend_pct(load, tally),
             "dropped_pct": 100.0 * (expected - tally.received) / expected,
             **_percentiles(tally.frames, "", ("p50", "p99", "p999", "max")),
             **_percentiles(tally.controls, "control_to_frame_", ("p50", "p99")),
             **_percentiles(tally.ticks, "tick_", ("p50", "p99")),
+            **_percentiles(tally.plain_ticks, "tick_plain_", ("p99",)),
+            **_percentiles(tally.refined_ticks, "tick_refined_", ("p99",)),
             **_percentiles(tally.queries, "query_", ("p50", "p99")),
             "transitions_per_s": _per_character_s(tally, tally.counts["transitions"]),
             "refined_pct": _refined_pct(tally),
@@ -163,6 +166,15 @@ def _percentiles(histogram: Any, prefix: str, names: Sequence[str]) -> dict[str,
 
 def _per_character_s(tally: Tally, count: int) -> float:
     return count * RATE_HZ / max(1, tally.counts["character_ticks"])
+
+
+def _trend_pct(load: Load, tally: Tally) -> float:
+    """Return by how much more late frames came in the second half than in the first."""
+    half = load.seconds / 2.0
+    halves = [0, 0]
+    for second, late in tally.late_by_second.items():
+        halves[second >= half] += late
+    return _share(halves[1] - halves[0], tally.expected / 2.0)
 
 
 def _interval_ms(tally: Tally) -> float:

@@ -171,7 +171,11 @@ class DrivenStream:
         tally.controls.record_value(max(1, round(1e6 * (now - self._sent[step]))))
         tally.characters_frames += plan.characters
         elapsed_ms = sum(timing.elapsed_ms for timing in frame.timings)
-        tally.ticks.record_value(max(1, round(1e3 * elapsed_ms)))
+        elapsed_us = max(1, round(1e3 * elapsed_ms))
+        tally.ticks.record_value(elapsed_us)
+        (tally.refined_ticks if self._refines(frame) else tally.plain_ticks).record_value(
+            elapsed_us
+        )
         # what dropped frames told, this one tells
         tally.counts["character_ticks"] += plan.characters * (1 + frame.dropped)
         tally.counts["searches"] += frame.searches
@@ -183,6 +187,15 @@ class DrivenStream:
                 tally.counts[pb.FrameFlag.Name(flag)] += hit
         if step % _HASH_EVERY == 0:
             tally.poses.setdefault(step, []).extend(_hashes(frame, plan.characters))
+
+    def _refines(self, frame: pb.Frame) -> bool:
+        """Tell whether a network was asked about a transition in this tick."""
+        return self._plan.stitcher == "refine" and any(
+            event.HasField("transition")
+            and event.transition.reason != pb.TRANSITION_REASON_START
+            and not event.transition.fallback
+            for event in frame.events
+        )
 
     def _take_transitions(self, frame: pb.Frame) -> None:
         """Count transitions; whether one was refined, the character's next one tells."""

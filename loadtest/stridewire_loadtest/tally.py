@@ -11,6 +11,7 @@ LATE_S = 1.0 / 60.0
 GENERATOR_LATE_S = 0.004
 """A control that leaves later than this after its scheduled time was sent late."""
 _LONGEST_US = 600_000_000
+_HISTOGRAMS = ("frames", "controls", "sending", "ticks", "plain_ticks", "refined_ticks", "queries")
 
 
 def histogram() -> Any:
@@ -45,6 +46,10 @@ class Tally:
     """From the scheduled time to sending."""
     ticks: Any = field(default_factory=histogram)
     """What the server says that a tick took."""
+    plain_ticks: Any = field(default_factory=histogram)
+    """The same, of ticks in which no transition was refined."""
+    refined_ticks: Any = field(default_factory=histogram)
+    """The same, of ticks in which a transition was refined."""
     queries: Any = field(default_factory=histogram)
     poses: dict[int, list[bytes]] = field(default_factory=dict)
     """Hashes of the poses of all characters at some steps."""
@@ -79,7 +84,7 @@ class Tally:
             setattr(self, name, getattr(self, name) + getattr(other, name))
         self.counts.update(other.counts)
         self.late_by_second.update(other.late_by_second)
-        for name in ("frames", "controls", "sending", "ticks", "queries"):
+        for name in _HISTOGRAMS:
             getattr(self, name).add(getattr(other, name))
         for step, hashes in other.poses.items():
             self.poses.setdefault(step, []).extend(hashes)
@@ -92,11 +97,11 @@ class Tally:
 
     def __getstate__(self) -> dict[str, Any]:
         state = dict(self.__dict__)
-        for name in ("frames", "controls", "sending", "ticks", "queries"):
+        for name in _HISTOGRAMS:
             state[name] = state[name].encode()
         return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        for name in ("frames", "controls", "sending", "ticks", "queries"):
+        for name in _HISTOGRAMS:
             state[name] = HdrHistogram.decode(state[name])
         self.__dict__.update(state)
