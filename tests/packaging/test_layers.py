@@ -68,7 +68,15 @@ THIRD_PARTY = {
         "numpy",
         "websockets",
     },
-    "stridewire_models": {"click", "numpy", "onnx", "onnxruntime", "scipy", "torch"},
+    "stridewire_models": {
+        "click",
+        "matplotlib",
+        "numpy",
+        "onnx",
+        "onnxruntime",
+        "scipy",
+        "torch",
+    },
     "stridewire_loadtest": {"click", "grpc", "hdrh", "matplotlib", "numpy", "psutil"},
 }
 
