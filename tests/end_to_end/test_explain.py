@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from stridewire import Client
-from stridewire._messages import Detail
+from stridewire._messages import CharacterSpec, Detail
 from stridewire.commands import main
 from stridewire.formats.session_file import SessionFile
 from stridewire.scripts import script
@@ -63,6 +63,27 @@ def test_what_is_explained_is_what_happened(recording: Path, moments: list[Momen
             assert moment.bias == pytest.approx(event.bias)
             assert moment.candidates[0].clip == event.to_clip
             assert moment.candidates[0].cost == pytest.approx(event.cost)
+
+
+def test_why_a_transition_is_not_refined_is_explained(
+    small_library: Library, tmp_path: Path
+) -> None:
+    """At 30 frames/s the network is not asked, and the verdict says so."""
+    path = tmp_path / "slow.jsonl"
+    inner = Client.in_process(small_library.path)._transport
+    with (
+        Client(RecordingTransport(inner, path)) as client,
+        client.open_session([CharacterSpec(0, stitcher="refine")], seed=4) as session,
+    ):
+        controls = script("u-turns").controls
+        for i in range(60):
+            session.step(*controls(i / 30.0, 1, 4), dt=1 / 30)
+    verdicts = [
+        m.verdict for m in inspect(SessionFile.open(path), small_library, 0) if m.transition
+    ]
+    assert len(verdicts) > 1
+    assert not any("not refined" in verdict for verdict in verdicts[:1])  # the beginning
+    assert all(verdict.endswith("; not refined: other rate") for verdict in verdicts[1:])
 
 
 def test_staying_is_explained_too(moments: list[Moment]) -> None:

@@ -132,7 +132,7 @@ def test_demo(small_library: Library, tmp_path: Path) -> None:
     """A server, four characters, one second at wall-clock speed; motion, sheet, figures."""
     out, sheet = tmp_path / "demo.bvh", tmp_path / "demo.png"
     result = run(
-        *("demo", "--seconds", 1, "--library", small_library.path),
+        *("demo", "--seconds", 1, "--library", small_library.path, "--stitcher", "refine"),
         *("--out", out, "--sheet", sheet, "--json"),
     )
     assert result.exit_code == 0, result.output
@@ -141,6 +141,7 @@ def test_demo(small_library: Library, tmp_path: Path) -> None:
     assert told["settings"]["realtime"] is True
     assert (row["characters"], row["frames"], row["dropped_pct"]) == (4, 60, 0.0)
     assert 0.0 < row["p50_ms"] <= row["p99_ms"] <= row["max_ms"]
+    assert 0.0 <= row["refined_pct"] <= 100.0
     assert len(read_bvh(out).rotations) == 60
     assert sheet.read_bytes().startswith(b"\x89PNG")
 
