@@ -1,6 +1,7 @@
 """`stridewire serve`: the server process."""
 
 import asyncio
+import gc
 import json
 import logging
 import os
@@ -112,6 +113,9 @@ async def _serve(
     runtime = Runtime(libraries, record=None if record is None else _recorder(record))
     server = AnimationServer(runtime, settings)
     bound = await server.start()
+    # what is there by now stays: going through it again and again would only stop every frame
+    gc.collect()
+    gc.freeze()
     _announce(bound, server.websocket_address, libraries, as_json)
     await wait_for_signal()
     await _stop(server)
