@@ -91,8 +91,8 @@ def _turn(swing: Quaternions, old: Vectors, new: Vectors, rotation: Quaternions)
 
 
 def _length(v: Vectors) -> Vectors:
-    return np.asarray(np.sqrt(np.sum(v * v, axis=-1, keepdims=True)))
+    return np.asarray(np.sqrt(quaternion.dot(v, v))[..., None])
 
 
 def _dot(a: Vectors, b: Vectors) -> Vectors:
-    return np.asarray(np.sum(a * b, axis=-1, keepdims=True))
+    return quaternion.dot(a, b)[..., None]

@@ -108,7 +108,7 @@ def raise_heels(pose: LegPose, toes: Vectors, reach: Floats) -> tuple[LegPose, V
     foot = pose.ankle - pose.toe
     up = pose.hip - toes
     length, distance = _length(foot), np.maximum(_length(up), 1e-6)
-    cosine = np.sum(foot * up, axis=-1) / np.maximum(length * distance, 1e-9)
+    cosine = quaternion.dot(foot, up) / np.maximum(length * distance, 1e-9)
     angle = np.arccos(np.clip(cosine, -1.0, 1.0))
     stretch = smooth_min(_length(toes + foot - pose.hip), reach, SOFT_REACH)
     nearest = (distance**2 + length**2 - stretch**2) / np.maximum(2.0 * distance * length, 1e-9)
@@ -154,4 +154,4 @@ def smooth_min(a: Floats, b: Floats, width: float) -> Floats:
 
 
 def _length(v: Vectors) -> Floats:
-    return np.asarray(np.sqrt(np.sum(v * v, axis=-1)))
+    return np.asarray(np.sqrt(quaternion.dot(v, v)))
