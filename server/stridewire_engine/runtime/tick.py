@@ -273,7 +273,8 @@ class Tick:
         spring = auto.spring_will_do(
             gap, speed, library.contacts[at][..., 1::2], ahead / library.frame_rate
         )
-        return np.where(chosen, np.where(spring, _SPRING, _STANCE), rows.stitcher)
+        planting = _STANCE if self._refining is None else _REFINE
+        return np.where(chosen, np.where(spring, _SPRING, planting), rows.stitcher)
 
     def _stitch(
         self, state: Characters, sample: Sample, motion: Floats, delta: Floats, dt: Floats

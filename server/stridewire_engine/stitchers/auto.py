@@ -2,7 +2,7 @@
 
 Where planted toes lie close to where the new clip has them, or land so late that a spring has
 closed the gap by then, a spring is back with the clip soonest and slides no foot. Anywhere else
-feet have to be planted, which `stance` does.
+feet have to be planted, which `refine` does, or `stance` where the network does not fit.
 """
 
 import numpy as np

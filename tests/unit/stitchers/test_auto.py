@@ -36,7 +36,7 @@ def test_height_alone_drags_nothing() -> None:
 
 
 def test_characters_take_the_better_of_two(small_library: Library) -> None:
-    """Characters that turn now and then are stitched by spring or stance, by nothing else."""
+    """Characters that turn now and then are stitched by spring or refine, by nothing else."""
     runtime = Runtime([small_library], clock=lambda: 0.0)
     specs = [CharacterSpec(i, GroundPose((3.0 * i, 0, 0)), stitcher="auto") for i in range(6)]
     session = runtime.open(Open(specs, seed=5))
@@ -45,5 +45,5 @@ def test_characters_take_the_better_of_two(small_library: Library) -> None:
         velocity = np.tile([[1.4, 0.0], [0.0, 1.4]][i // 60 % 2], (6, 1))
         runtime.advance([(session, Step(i, 1 / 60, velocity_xz=velocity))])
         used |= {STITCHER_NAMES[by] for by in session.crowd.state.stitched_by}
-    assert "stance" in used
-    assert used <= {"spring", "stance"}
+    assert "refine" in used
+    assert used <= {"spring", "refine"}
