@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from itertools import islice
 
 import pytest
@@ -35,17 +36,19 @@ def test_the_session_of_a_killed_client_ends(own_server: str) -> None:
     """SIGKILL in the middle of a session: it is gone in time, a neighbour misses no frame."""
     command = [sys.executable, "-c", DRIVER, own_server]
     with (
+        ThreadPoolExecutor(1) as reader,
         Client(own_server, timeout_s=DEADLINE_S) as client,
         client.open_session(pacing=Pacing.SERVER) as neighbour,
         subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as driver,
     ):
+        reading = reader.submit(lambda: list(islice(neighbour.frames(), 240)))
         assert driver.stdout is not None
         assert driver.stdout.readline().strip() == "1"
         assert client.info().sessions == 2
         driver.send_signal(signal.SIGKILL)
         assert eventually(lambda: client.info().sessions == 1, GONE_WITHIN_S)
-        frames = list(islice(neighbour.frames(), 120))
-        assert [frame.frame for frame in frames] == list(range(1, 121))
+        frames = reading.result()
+        assert [frame.frame for frame in frames] == list(range(1, 241))
         assert not any(frame.dropped for frame in frames)
 
 
