@@ -6,11 +6,9 @@ from typing import NamedTuple
 
 from stridewire_engine.evaluation.paper_windows import rewritten
 from stridewire_engine.evaluation.seam_methods import Method, refined
-from stridewire_engine.networks.onnx_model import OnnxModel, is_listed, shipped_model
+from stridewire_engine.networks.onnx_model import OnnxModel
 from stridewire_engine.networks.rmr import Refiner, shipped_refiner
 from stridewire_engine.networks.rmr.paper_refiner import PaperRefiner
-
-_PAPER = "rmr-paper"
 
 
 class Measured(NamedTuple):
@@ -22,7 +20,7 @@ class Measured(NamedTuple):
 
 
 def networks(others: Mapping[str, Path]) -> dict[str, Measured]:
-    """Return the refiner that ships, the paper's network beside it, and others by name.
+    """Return the refiner that ships, and others by name.
 
     Args:
         others: Files by name.
@@ -32,8 +30,6 @@ def networks(others: Mapping[str, Path]) -> dict[str, Measured]:
         OSError: If one cannot be read.
     """
     out = {"refine": Measured(refined(shipped_refiner()), None)}
-    if is_listed(_PAPER):
-        out["refine-paper"] = _opened(shipped_model(_PAPER))
     for name, path in others.items():
         out[name] = _opened(OnnxModel(path.name, path.read_bytes()))
     return out
