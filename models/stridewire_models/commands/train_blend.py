@@ -8,20 +8,14 @@ from pathlib import Path
 import click
 
 from stridewire_engine.networks.blend.pairs import Frames
-from stridewire_models.commands.split_import import clips_of
+from stridewire_models.commands.split_import import clips_of, split_option
 
 VARIANTS = ("correction", "paper")
 _LOOK_EVERY = 500
 
 
 @click.command()
-@click.option(
-    "--data",
-    envvar="STRIDEWIRE_DATA",
-    required=True,
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Folder with split.csv and the unpacked CMU trials; STRIDEWIRE_DATA by default.",
-)
+@split_option
 @click.option(
     "--out",
     required=True,

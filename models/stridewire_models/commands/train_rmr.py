@@ -8,7 +8,7 @@ import click
 import numpy as np
 
 from stridewire_engine.networks.rmr.takes import Takes
-from stridewire_models.commands.split_import import clips_of
+from stridewire_models.commands.split_import import clips_of, split_option
 
 _LOOK_EVERY = 200
 VARIANTS = ("steps", "paper")
@@ -16,13 +16,7 @@ CELLS = ("bgru", "blstm", "gru", "lstm")
 
 
 @click.command()
-@click.option(
-    "--data",
-    envvar="STRIDEWIRE_DATA",
-    required=True,
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Folder with split.csv and the unpacked CMU trials; STRIDEWIRE_DATA by default.",
-)
+@split_option
 @click.option(
     "--out",
     required=True,

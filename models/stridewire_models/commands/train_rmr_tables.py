@@ -6,17 +6,11 @@ from pathlib import Path
 import click
 
 from stridewire_engine.networks.rmr.takes import Takes
-from stridewire_models.commands.split_import import clips_of
+from stridewire_models.commands.split_import import clips_of, split_option
 
 
 @click.command("rmr-tables")
-@click.option(
-    "--data",
-    envvar="STRIDEWIRE_DATA",
-    required=True,
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Folder with split.csv and the unpacked CMU trials; STRIDEWIRE_DATA by default.",
-)
+@split_option
 @click.option(
     "--out",
     required=True,

@@ -6,6 +6,6 @@ gives contacts and the targets of swings to the stance-aware stitcher.
 
 from stridewire_engine.networks.rmr.guidance import Guidance
 from stridewire_engine.networks.rmr.plans import Plans, seams_of
-from stridewire_engine.networks.rmr.refiner import Refiner, load_refiner, shipped_refiner
+from stridewire_engine.networks.rmr.refiner import Refiner, shipped_refiner
 
-__all__ = ["Guidance", "Plans", "Refiner", "load_refiner", "seams_of", "shipped_refiner"]
+__all__ = ["Guidance", "Plans", "Refiner", "seams_of", "shipped_refiner"]

@@ -1,7 +1,6 @@
 """The refiner: load, check, run."""
 
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
@@ -60,16 +59,6 @@ class Refiner:
             raise ValueError(f"plans of {plans.frames} frames; expected a multiple of {TOKEN}")
         curves, contacts, distance = self.model.run(features.inputs(plans))
         return guidance(plans, curves, contacts, distance)
-
-
-def load_refiner(path: Path) -> Refiner:
-    """Open a refiner from a file.
-
-    Raises:
-        ModelError: If it is none.
-        OSError: If it cannot be opened.
-    """
-    return Refiner(OnnxModel(path.name, path.read_bytes()))
 
 
 @cache
