@@ -35,6 +35,7 @@ ENGINE_FLOORS = {
     "library": 1,
     "networks": 1,
     "rigs": 1,
+    "compiled": 0,
 }
 
 THIRD_PARTY = {
@@ -52,6 +53,7 @@ THIRD_PARTY = {
         "click",
         "faiss",
         "matplotlib",
+        "numba",
         "numpy",
         "onnxruntime",
         "scipy",

@@ -1,0 +1,56 @@
+"""Compiled: hot passes of the tick as loops over characters, in machine code.
+
+Each kernel here does what a function of numpy passes does elsewhere. That function is the
+reference, which tests compare with, and what runs where numba is absent or
+`STRIDEWIRE_COMPILED=0` is set. Kernels take arrays and named tuples of arrays, one row a character;
+they let other threads run meanwhile. numba's own rule that only a function's own file counts would
+keep stale code, so the cache's folder is named after the contents of all files here.
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
+
+ENABLED = find_spec("numba") is not None and os.environ.get("STRIDEWIRE_COMPILED", "1") != "0"
+"""Whether kernels run; callers ask each time, so that one process can compare both ways."""
+
+
+def kernel(function: FunctionT) -> FunctionT:
+    """Compile a function when it is first called; machine code is kept between processes."""
+    if not ENABLED:
+        return function
+    import numba
+
+    config: Any = numba.config
+    before, config.CACHE_DIR = config.CACHE_DIR, str(_CACHE)
+    try:
+        compiled = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    finally:
+        config.CACHE_DIR = before
+    return cast(FunctionT, compiled)
+
+
+def _cache() -> Path:
+    """Return the folder of machine code made from these very files; a fresh one where none lasts.
+
+    Like the embedded library's, it is below the user's cache folder.
+    """
+    digest = hashlib.sha256()
+    for file in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(file.read_bytes())
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    folder = Path(home) / "stridewire" / f"compiled-{digest.hexdigest()[:16]}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="stridewire-compiled-"))
+    return folder if os.access(folder, os.W_OK) else Path(tempfile.mkdtemp(prefix="stridewire-"))
+
+
+_CACHE = _cache() if ENABLED else Path()
