@@ -14,34 +14,12 @@ Call = Callable[..., list[pb.AnimateResponse]]
 OPEN = {
     "open.resume_token": {"resume_token": "r"},
 }
-SPEC = {
-    "rate_divider": {"rate_divider": 2},
-}
 
 
 @pytest.mark.parametrize("field", OPEN)
 def test_open(raw_stream: Call, field: str) -> None:
     """Open with a later field ends UNIMPLEMENTED and names it."""
     assert field in refusal(raw_stream, opening(**OPEN[field]))
-
-
-@pytest.mark.parametrize("field", SPEC)
-def test_characters_of_an_open(raw_stream: Call, field: str) -> None:
-    """A character with a later field ends Open UNIMPLEMENTED; the path has its place."""
-    specs = [pb.CharacterSpec(id=1), pb.CharacterSpec(id=2, **SPEC[field])]
-    request = pb.AnimateRequest(open=pb.Open(characters=specs))
-    assert f"open.characters[1].{field}" in refusal(raw_stream, request)
-
-
-@pytest.mark.parametrize("field", SPEC)
-def test_characters_of_an_edit(raw_stream: Call, field: str) -> None:
-    """In an Edit the same is told in the stream, and the stream lives."""
-    edit = pb.Edit(add=[pb.CharacterSpec(id=5, **SPEC[field])])
-    responses = raw_stream(opening(), pb.AnimateRequest(edit=edit), stepping(step=1))
-    (violation,) = responses[1].error.violations
-    assert violation.field == f"edit.add[0].{field}"
-    assert "not implemented yet" in violation.description
-    assert list(responses[2].frame.characters) == [0]
 
 
 def test_all_other_fields_work(raw_stream: Call) -> None:
@@ -55,6 +33,7 @@ def test_all_other_fields_work(raw_stream: Call) -> None:
         filter="walk | idle",
         weights={"trajectory-position": 2.0},
         responsiveness=0.7,
+        rate_divider=2,
     )
     opened = pb.Open(
         library="small",
@@ -80,7 +59,7 @@ def test_all_other_fields_work(raw_stream: Call) -> None:
     )
     # sugar for a filter, so that it comes in a control of its own
     gait = pb.Sparse(character=7, gait="walk")
-    later = {"gait", *(name.partition(".")[2] for name in OPEN), *SPEC}
+    later = {"gait", *(name.partition(".")[2] for name in OPEN)}
     for message in (opened, spec, sparse):
         present = {field.name for field, _ in message.ListFields()}
         assert present == {f.name for f in message.DESCRIPTOR.fields} - later

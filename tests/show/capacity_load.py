@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from capture import GIVEN
+from import_libraries import STANDARD
 from judge_results import library
 from points import ROOT
 
@@ -20,7 +21,7 @@ STITCHER = "refine"
 @cache
 def standard_library() -> Library:
     """Return the library of the standard load: captured, or synthetic where there is no capture."""
-    return library("cmu-seen" if (GIVEN / "split.csv").is_file() else "synthetic")
+    return library(STANDARD.name if (GIVEN / "split.csv").is_file() else "synthetic")
 
 
 def load(scenario: str, characters: int, seconds: float, *more: str) -> list[dict[str, Any]]:

@@ -58,6 +58,14 @@ LIBRARIES = (
     Recipe("lafan1-dev", ("lafan1",), ("train", "validation"), (), OTHERS),
     Recipe("lafan1", ("lafan1",), ("test",), (), OTHERS),
 )
+_WIDER = ("backward", "crouch", "jump", "sidestep", "sidestep-left", "sidestep-right")
+STANDARD = Recipe(
+    "cmu-seen-wide",
+    ("cmu", "cmu-more"),
+    ("train",),
+    (*LOCOMOTION, "turn-left", "turn-right", *_WIDER),
+)
+"""Of the standard load: `cmu-seen` with other ways to go, since that alone has 38 k frames of 60 k."""
 
 
 def libraries() -> Iterator[Point]:

@@ -13,7 +13,7 @@ from itertools import count
 
 import numpy as np
 from capture import BUILD
-from import_libraries import LIBRARIES
+from import_libraries import LIBRARIES, STANDARD
 
 from stridewire.motion import quaternion
 from stridewire.motion.clip import Clip
@@ -31,7 +31,7 @@ def captured(name: str) -> Library:
     try:
         return Library.open(path)
     except LibraryError:
-        recipe = next(recipe for recipe in LIBRARIES if recipe.name == name)
+        recipe = next(one for one in (*LIBRARIES, STANDARD) if one.name == name)
         words = [sys.executable, "-m", "stridewire", *map(str, recipe.command(path))]
         subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
         return Library.open(path)

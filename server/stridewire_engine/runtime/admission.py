@@ -35,7 +35,9 @@ _MIN_RATE_HZ, _MAX_RATE_HZ = 10.0, 240.0
 _MAX_CREDITS = 3600
 _MAX_WEIGHT = 1e6
 _MIN_HEIGHT_M, _MAX_HEIGHT_M = 0.5, 3.0
-NOT_YET = "is not implemented yet; leave it out"
+_MAX_DIVIDER = 15
+"""So that no pose is older than a quarter of a second at 60 frames a second."""
+_NOT_YET = "is not implemented yet; leave it out"
 
 
 def check_open(message: Open, limits: Limits, matcher: Matcher) -> None:
@@ -50,13 +52,9 @@ def check_open(message: Open, limits: Limits, matcher: Matcher) -> None:
         InvalidRequestError: With one violation a field.
         NotImplementedYetError: Naming the field.
     """
-    later = [*_open_later(message)]
-    for i, spec in enumerate(message.characters):
-        later += [f"open.characters[{i}].{name}" for name in later_fields(spec)]
-    if later:
-        raise NotImplementedYetError(
-            f"{later[0]} {NOT_YET}", [Violation(f, NOT_YET) for f in later]
-        )
+    if message.resume_token:
+        path = "open.resume_token"
+        raise NotImplementedYetError(f"{path} {_NOT_YET}", [Violation(path, _NOT_YET)])
     found = [*_open_violations(message, limits)]
     taken: set[int] = set()
     for i, spec in enumerate(message.characters):
@@ -64,12 +62,6 @@ def check_open(message: Open, limits: Limits, matcher: Matcher) -> None:
         taken.add(spec.id)
     if found:
         raise InvalidRequestError.of(*found)
-
-
-def later_fields(spec: CharacterSpec) -> Iterator[str]:
-    """Yield the fields of a character that belong to later versions and are set."""
-    if spec.rate_divider > 1:
-        yield "rate_divider"
 
 
 def check_spec(
@@ -98,6 +90,7 @@ def check_spec(
     yield from check_filter(f"{path}.filter", spec.filter, matcher)
     yield from check_weights(f"{path}.weights", spec.weights, matcher.schema)
     yield from check_responsiveness(f"{path}.responsiveness", spec)
+    yield from check_rate_divider(f"{path}.rate_divider", spec)
 
 
 def check_stitcher(path: str, name: str) -> Iterator[Violation]:
@@ -141,6 +134,14 @@ def check_responsiveness(path: str, spec: CharacterSpec) -> Iterator[Violation]:
     given = spec.responsiveness
     if given is not None and not 0.0 <= given <= 1.0:
         yield Violation(path, f"{given}; allowed are 0, for quality, to 1, for response")
+
+
+def check_rate_divider(path: str, spec: CharacterSpec) -> Iterator[Violation]:
+    """Yield what is wrong with the number of ticks between a character's poses."""
+    if not 0 <= spec.rate_divider <= _MAX_DIVIDER:
+        yield Violation(
+            path, f"{spec.rate_divider}; allowed are 0 to {_MAX_DIVIDER} ticks from pose to pose"
+        )
 
 
 def merged_weights(weights: Mapping[str, float], schema: Schema) -> Floats:
@@ -265,11 +266,6 @@ def check_trajectory(path: str, trajectory: Trajectory) -> Iterator[Violation]:
     facings = trajectory.facings_yaw
     if facings is not None and (np.shape(facings) != (count,) or not np.all(np.isfinite(facings))):
         yield Violation(f"{path}.facings_yaw", f"expected {count} finite radians, or none")
-
-
-def _open_later(message: Open) -> Iterator[str]:
-    if message.resume_token:
-        yield "open.resume_token"
 
 
 def _open_violations(message: Open, limits: Limits) -> Iterator[Violation]:

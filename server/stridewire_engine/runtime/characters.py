@@ -185,6 +185,21 @@ class Characters(Columns):
     time: Floats = column(dtype=np.float64)
     """Seconds since the character was added."""
 
+    # those who are far away; see `holding`
+    rate_divider: Indices = column(dtype=np.int8)
+    """Stepped every so many ticks; 0 means every tick, too."""
+    ticks_left: Indices = column(dtype=np.int8)
+    """Until the next step."""
+    owed: Floats = column(dtype=np.float64)
+    """Seconds since the last step."""
+    held_root: Floats = column(7)
+    """Shown last, as are the others, in float32."""
+    held_hips: Vectors = column(3)
+    held_rotations: Quaternions = column("J", 4)
+    held_foot_targets: Vectors = column(2, 3)
+    held_simulated_root: Floats = column(4)
+    held_fallback: Indices = column(dtype=np.int8)
+
     @classmethod
     def allocate(cls, rows: int, joints: int, channels: int) -> "Characters":
         """Return fresh rows."""

@@ -34,6 +34,7 @@ _KEPT = (
     "filter",
     "weights",
     "stagger",
+    "rate_divider",
     "has_ground",
     "ground_height",
     "ground_slope",

@@ -9,6 +9,7 @@ from stridewire.motion.array_types import Floats, Indices
 from stridewire_engine.library import Library
 from stridewire_engine.matching.candidates import CandidateSet
 from stridewire_engine.matching.search import Matcher
+from stridewire_engine.runtime import holding
 from stridewire_engine.runtime.characters import Characters, contiguous
 from stridewire_engine.runtime.choice import Considered
 from stridewire_engine.runtime.settings import TickSettings
@@ -96,10 +97,10 @@ class Crowd:
             dt: `(N,)` seconds of each session's rows.
         """
         which = contiguous(np.concatenate(rows))
-        part = self.state.take(which)
+        part, passed = self.state.take(which), np.concatenate(dt)
         if self.watch is not None:
-            self.watch(part, np.concatenate(dt))
-        block = self._tick.step(part, np.concatenate(dt), self.sets)
+            self.watch(part, passed)
+        block = self._step(part, passed)
         if not isinstance(which, slice):
             self.state.put(which, part)
         return block
@@ -107,6 +108,18 @@ class Crowd:
     def consider(self, rows: Characters, dt: Floats) -> tuple[Indices, Considered]:
         """Say what rows would search for and find; see `Tick.consider`."""
         return self._tick.consider(rows, dt, self.sets)
+
+    def _step(self, rows: Characters, dt: Floats) -> Block:
+        """Step rows; those that are far away only when it is their turn."""
+        if not (rows.rate_divider.any() or rows.owed.any()):
+            return self._tick.step(rows, dt, self.sets)
+        stepped = holding.due(rows, dt)
+        which = contiguous(np.flatnonzero(stepped))
+        part = rows.take(which)
+        block = self._tick.step(part, part.owed.copy(), self.sets)
+        part.owed[...] = 0.0
+        rows.put(which, part)
+        return holding.held(rows, stepped, block)
 
     def _room(self, amount: int) -> int:
         """Return the first row of a free run, at the end if there is none before."""

@@ -32,8 +32,7 @@ from stridewire_engine.runtime.tick import Block
 from stridewire_engine.stitchers import DEFAULT_STITCHER, STITCHER_NAMES
 
 _MAX_VIOLATIONS = 100
-_UPDATABLE = ("stitcher", "foot_lock", "filter", "weights", "responsiveness")
-_UPDATABLE_LATER = ("rate_divider",)
+_UPDATABLE = ("stitcher", "foot_lock", "filter", "weights", "responsiveness", "rate_divider")
 
 
 class Session:
@@ -165,10 +164,8 @@ class Session:
             self._roster.remove(at)
 
     def _add_one(self, path: str, spec: CharacterSpec) -> Iterator[Violation]:
-        later = admission.later_fields(spec)
-        wrong = [Violation(f"{path}.{name}", admission.NOT_YET) for name in later]
         taken = self._roster.ids.tolist()
-        wrong += admission.check_spec(path, spec, taken, self.crowd.matcher)
+        wrong = [*admission.check_spec(path, spec, taken, self.crowd.matcher)]
         most = self._limits.max_characters
         if len(self) >= most:
             wrong.append(Violation(path, f"a session holds at most {most} characters"))
@@ -185,9 +182,7 @@ class Session:
         if not update.mask:
             wrong.append(Violation(f"{path}.mask", f"is empty; {allowed}"))
         for name in update.mask:
-            if name in _UPDATABLE_LATER:
-                wrong.append(Violation(f"{path}.spec.{name}", admission.NOT_YET))
-            elif name not in _UPDATABLE:
+            if name not in _UPDATABLE:
                 wrong.append(Violation(f"{path}.mask", f"{name!r} cannot change; {allowed}"))
         wrong += self._check_values(f"{path}.spec", update)
         yield from wrong
@@ -204,6 +199,8 @@ class Session:
             yield from admission.check_weights(f"{path}.weights", spec.weights, matcher.schema)
         if "responsiveness" in update.mask:
             yield from admission.check_responsiveness(f"{path}.responsiveness", spec)
+        if "rate_divider" in update.mask:
+            yield from admission.check_rate_divider(f"{path}.rate_divider", spec)
 
     def _set(self, row: int, spec: CharacterSpec, names: Iterable[str]) -> None:
         state = self.crowd.state
@@ -220,6 +217,8 @@ class Session:
         if "responsiveness" in names:
             given = spec.responsiveness
             state.responsiveness[row] = NEUTRAL if given is None else given
+        if "rate_divider" in names:
+            state.rate_divider[row], state.ticks_left[row] = spec.rate_divider, 0
 
 
 def _error(step: int, violations: Iterable[Violation]) -> StreamError | None:

@@ -55,7 +55,7 @@ def test_a_new_character_does_not_disturb_the_others(small_library: Library) -> 
         (Edit(add=[CharacterSpec(10)]), "edit.add[0].id"),
         (Edit(add=[CharacterSpec(20), CharacterSpec(20)]), "edit.add[1].id"),
         (Edit(add=[CharacterSpec(20, filter="(walk")]), "edit.add[0].filter"),
-        (Edit(add=[CharacterSpec(20, rate_divider=2)]), "edit.add[0].rate_divider"),
+        (Edit(add=[CharacterSpec(20, rate_divider=16)]), "edit.add[0].rate_divider"),
         (
             Edit(update=[CharacterUpdate(CharacterSpec(99), ("stitcher",))]),
             "edit.update[0].spec.id",
@@ -63,7 +63,7 @@ def test_a_new_character_does_not_disturb_the_others(small_library: Library) -> 
         (Edit(update=[CharacterUpdate(CharacterSpec(10), ())]), "edit.update[0].mask"),
         (Edit(update=[CharacterUpdate(CharacterSpec(10), ("root",))]), "edit.update[0].mask"),
         (
-            Edit(update=[CharacterUpdate(CharacterSpec(10, rate_divider=2), ("rate_divider",))]),
+            Edit(update=[CharacterUpdate(CharacterSpec(10, rate_divider=16), ("rate_divider",))]),
             "edit.update[0].spec.rate_divider",
         ),
         (
