@@ -65,7 +65,7 @@ STANDARD = Recipe(
     ("train",),
     (*LOCOMOTION, "turn-left", "turn-right", *_WIDER),
 )
-"""Of the standard load: `cmu-seen` with other ways to go, since that alone has 38 k frames of 60 k."""
+"""Of the standard load: `cmu-seen` and other ways to go: that alone has 38 k frames, not 60 k."""
 
 
 def libraries() -> Iterator[Point]:

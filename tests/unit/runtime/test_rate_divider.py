@@ -1,4 +1,4 @@
-"""Characters that are far away: a new pose every n-th tick, and all the time between made up for."""
+"""Characters that are far away: a new pose every n-th tick, no time lost."""
 
 from dataclasses import replace
 
