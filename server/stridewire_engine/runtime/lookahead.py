@@ -62,7 +62,7 @@ def legs_ahead(
         library, clip, (state.clip_time[:, None] + state.pace[:, None] * times).ravel()
     )
     motion = sampling.root_delta(library, now, then).reshape(-1, count, 3)
-    faded = -np.expm1(-_LN2 * times / root_halflife) * (root_halflife / _LN2)
+    faded = fading(times, root_halflife)
     motion += state.root_offset[:, None] * faded[:, None] + pull[:, None] * times[:, None]
     # a few metres and radians at most: float32 is exact enough, and half the work
     motion = motion.astype(np.float32)
@@ -71,6 +71,11 @@ def legs_ahead(
     hips, ankles, toes = (_move(_between(track, then), motion, sine, cosine) for track in tracks)
     contacts = library.contacts[then.nearest][:, 1::2].reshape(-1, count, 2)
     return LegsAhead(times, hips, ankles, toes, contacts)
+
+
+def fading(times: Floats, root_halflife: float) -> Floats:
+    """Return the seconds `(K,)` for which a velocity difference that fades counts until then."""
+    return np.asarray(-np.expm1(-_LN2 * times / root_halflife) * (root_halflife / _LN2))
 
 
 def _between(track: Vectors, at: sampling.Moments) -> Vectors:

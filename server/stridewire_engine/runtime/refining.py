@@ -234,7 +234,7 @@ def _said(state: Characters, times: Floats, labels: Flags) -> Guide:
     """Return what the network said `(N, K, …)` of times ahead; it fades into the labels."""
     frame = _frame(state, times)
     x = np.clip((GUIDED_FRAMES - frame) / (_FADE_OUT + 1.0), 0.0, 1.0)
-    x *= (state.guide_frames > 0)[:, None]
+    x *= guided(state)[:, None]
     share = (x * x * (3.0 - 2.0 * x))[..., None]
     rows = np.arange(len(frame))[:, None]
     at = np.clip(frame, 0, GUIDED_FRAMES - 1)

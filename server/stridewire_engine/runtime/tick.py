@@ -12,6 +12,7 @@ from stridewire._messages import FallbackReason, TransitionReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire.motion.skeleton import REFERENCE
+from stridewire_engine import compiled
 from stridewire_engine.matching.search import Matcher
 from stridewire_engine.networks.rmr.refiner import refiner_if_shipped
 from stridewire_engine.runtime import (
@@ -26,6 +27,7 @@ from stridewire_engine.runtime import (
 )
 from stridewire_engine.runtime.characters import Characters, contiguous
 from stridewire_engine.runtime.choice import Jumps, Sets
+from stridewire_engine.runtime.footwork import Footwork
 from stridewire_engine.runtime.lookahead import LegTracks, legs_ahead
 from stridewire_engine.runtime.settings import TickSettings
 from stridewire_engine.stitchers import (
@@ -106,6 +108,7 @@ class Tick:
         self._legs = Legs.of(matcher.library.skeleton)
         self._tracks = LegTracks.of(matcher.library, self._legs)
         self._spans = standing.Spans.of(matcher.library, settings.clip_end_margin)
+        self._footwork = Footwork(matcher.library, self._legs, self._tracks, settings.root_halflife)
         self._times = np.array(matcher.schema.trajectory_times)
         self._refining: refining.Refining | None = None
         refiner = refiner_if_shipped()
@@ -286,8 +289,11 @@ class Tick:
         passed = np.maximum(dt, 1e-6)[:, None]
         pull = (delta[:, [0, 2, 3]] - motion) / passed - state.root_offset
         small_dt = dt.astype(np.float32)
+        done = np.zeros(len(state), np.bool_)
+        if compiled.ENABLED:
+            done = self._footwork.apply(state, sample, pull, dt)
         for index, stitcher in enumerate(STITCHERS):
-            mine = contiguous(np.flatnonzero(state.stitched_by == index))
+            mine = contiguous(np.flatnonzero((state.stitched_by == index) & ~done))
             if not isinstance(mine, slice) and not len(mine):
                 continue
             part, seen = offsets.borrow(mine), sample.take(mine)
