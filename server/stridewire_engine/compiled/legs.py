@@ -1,7 +1,7 @@
 """Legs for kernels: where a leg's joints are, rolling a foot over its toe, bending to a target.
 
 The counterpart of `stitchers.legs` and `motion.two_bone_ik`, for one leg at a time. A leg is a
-tuple of hip, knee, ankle and toe, and of the rotations of thigh, shin and foot, in the root's frame.
+tuple of hip, knee, ankle and toe, and the rotations of thigh, shin and foot, in the root's frame.
 """
 
 import math

@@ -92,10 +92,11 @@ def wrap_angle(angle: float) -> float:
 @kernel
 def to_world(v: Vector, sine: float, cosine: float) -> Vector:
     """Turn a vector of the root's frame by the root's yaw, given by its sine and cosine."""
-    return v[0] * cosine + v[2] * sine, v[1], v[2] * cosine - v[0] * sine
+    # the factor makes all three of one type, whatever that of the vector
+    return v[0] * cosine + v[2] * sine, 1.0 * v[1], v[2] * cosine - v[0] * sine
 
 
 @kernel
 def to_root(v: Vector, sine: float, cosine: float) -> Vector:
     """Turn a vector of the world into the frame of a root of that yaw."""
-    return v[0] * cosine - v[2] * sine, v[1], v[2] * cosine + v[0] * sine
+    return v[0] * cosine - v[2] * sine, 1.0 * v[1], v[2] * cosine + v[0] * sine

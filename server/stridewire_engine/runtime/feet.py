@@ -61,14 +61,17 @@ def plant(
     lowest = state.root_position[:, None, 1] + _LOWEST_TOE * legs.toe_height
     shown_toe[..., 1] = np.maximum(shown_toe[..., 1], lowest)
     shift = turn_to_root(shown_toe - toe, state.root_yaw).astype(np.float32)
-    bent, ankles = rotations, pose.ankle
-    if not stands.all():
-        pose, ankles = raise_heels(pose, pose.toe + shift, _reach(legs, pose, shift))
-        bent, ankles = bend(legs, pose, rotations, ankles)
-    toes = ankles + (pose.toe - pose.ankle)
+    ankles, toes = pose.ankle, pose.toe
+    free = np.flatnonzero(~stands)
+    if len(free):
+        rotations = rotations.copy()
+        mine, way = LegPose(*(array[free] for array in pose)), shift[free]
+        mine, target = raise_heels(mine, mine.toe + way, _reach(legs, mine, way))
+        rotations[free], ankles[free] = bend(legs, mine, rotations[free], target)
+        toes[free] = ankles[free] + (mine.toe - mine.ankle)
     _remember(state, np.concatenate([ankles, toes, hips[:, None]], axis=1), dt)
     _keep_for_stance(state, ~stands)
-    return bent
+    return rotations
 
 
 def _reach(legs: Legs, pose: LegPose, shift: Vectors) -> Floats:

@@ -13,6 +13,8 @@ from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine import compiled
+from stridewire_engine.compiled.playback import Played
+from stridewire_engine.compiled.showing import Told
 from stridewire_engine.matching.search import Matcher
 from stridewire_engine.networks.rmr.refiner import refiner_if_shipped
 from stridewire_engine.runtime import (
@@ -27,8 +29,8 @@ from stridewire_engine.runtime import (
 )
 from stridewire_engine.runtime.characters import Characters, contiguous
 from stridewire_engine.runtime.choice import Jumps, Sets
-from stridewire_engine.runtime.footwork import Footwork
 from stridewire_engine.runtime.lookahead import LegTracks, legs_ahead
+from stridewire_engine.runtime.passes import Passes
 from stridewire_engine.runtime.settings import TickSettings
 from stridewire_engine.stitchers import (
     AUTO,
@@ -108,8 +110,10 @@ class Tick:
         self._legs = Legs.of(matcher.library.skeleton)
         self._tracks = LegTracks.of(matcher.library, self._legs)
         self._spans = standing.Spans.of(matcher.library, settings.clip_end_margin)
-        self._footwork = Footwork(matcher.library, self._legs, self._tracks, settings.root_halflife)
         self._times = np.array(matcher.schema.trajectory_times)
+        self._passes = Passes(
+            matcher.library, self._legs, self._tracks, self._spans, self._times, settings
+        )
         self._refining: refining.Refining | None = None
         refiner = refiner_if_shipped()
         self._unrefined = (
@@ -129,20 +133,52 @@ class Tick:
             sets: The candidate sets that rows name in `filter`.
         """
         timings = _Timings(self._clock)
+        settings = self._settings
+        fast = compiled.ENABLED and not state.has_path.any()
+        goal: Floats | None = None
+        if fast:
+            prediction, reason = self._passes.look(state, dt)
+        else:
+            goal, prediction, reason = self._look(state, dt)
+        timings.note("intent")
+        jumps = None
+        if reason.any():
+            jumps = choice.choose(state, self._matcher, sets, prediction, reason, settings)
+            if len(jumps.characters):
+                self._jump(state, jumps)
+        timings.note("search")
+        played = self._passes.play(state, dt) if goal is None else self._play(state, goal, dt)
+        timings.note("playback")
+        sample = Sample(
+            played.hips,
+            played.rotations,
+            played.contacts[:, 1::2],
+            Roots(state.root_position, state.root_yaw),
+            state.time <= dt,
+            self._legs,
+            None,
+        )
+        hips, rotations = self._stitch(state, sample, played.motion, played.delta, dt)
+        timings.note("stitch")
+        rotations = self._plant(state, hips, rotations, played.contacts, dt)
+        if state.has_ground.any():
+            self._lay(state, hips, rotations, played.delta, dt)
+        timings.note("feet")
+        return self._block(state, played, hips, rotations, jumps, reason > 0, timings)
+
+    def _look(self, state: Characters, dt: Floats) -> tuple[Floats, intent.Prediction, Indices]:
+        """Return goals `(N, 2)`, where simulated roots will be, and who searches why."""
         settings, library = self._settings, self._matcher.library
         state.time += dt
         goal = intent.set_goals(state, self._max_speed)
         prediction = intent.predict(state, goal, self._times, settings)
-        timings.note("intent")
         stands = standing.stands(state, library, self._spans, settings)
-        reason = choice.due(state, self._matcher, stands, dt, settings)
-        jumps = None
-        if reason.any():
-            jumps = choice.choose(state, self._matcher, sets, prediction, reason, settings)
-        timings.note("search")
+        return goal, prediction, choice.due(state, self._matcher, stands, dt, settings)
+
+    def _play(self, state: Characters, goal: Floats, dt: Floats) -> Played:
+        """Advance clips and roots and return what the clips show."""
+        settings, library = self._settings, self._matcher.library
         intent.advance(state, goal, dt, settings)
-        if jumps is not None and len(jumps.characters):
-            self._jump(state, jumps)
         before = sampling.moments(library, state.clip, state.clip_time)
         state.clip_time += standing.advance(state, library, self._spans, dt, settings)
         state.since_jump += dt
@@ -150,40 +186,48 @@ class Tick:
         state.clip_time[...] = sampling.wrap_times(library, state.clip, state.clip_time)
         hips, rotations = sampling.sample_pose(library, after)
         motion = sampling.root_delta(library, before, after)
-        contacts = library.contacts[after.nearest]
-        timings.note("playback")
         delta = root.advance(state, motion, dt, settings)
         state.root_speed[...] = np.where(
             dt > 0.0, np.hypot(delta[:, 0], delta[:, 2]) / np.maximum(dt, 1e-6), state.root_speed
         )
-        timings.note("root")
-        sample = Sample(
-            hips,
-            rotations,
-            contacts[:, 1::2],
-            Roots(state.root_position, state.root_yaw),
-            state.time <= dt,
-            self._legs,
-            None,
-        )
-        hips, rotations = self._stitch(state, sample, motion, delta, dt)
-        timings.note("stitch")
-        contacts = contacts & ~np.repeat(state.toe_step > 0.0, 2, axis=1)
+        contacts = library.contacts[after.nearest]
+        return Played(after.rows, after.weight, hips, rotations, contacts, motion, delta)
+
+    def _plant(
+        self,
+        state: Characters,
+        hips: Vectors,
+        rotations: Quaternions,
+        contacts: Flags,
+        dt: Floats,
+    ) -> Quaternions:
+        """Lock toes, remember what is shown, and return `(N, J, 4)` with the legs bent."""
+        if compiled.ENABLED:
+            self._passes.plant(state, hips, rotations, contacts, dt)
+            return rotations
+        contacts &= ~np.repeat(state.toe_step > 0.0, 2, axis=1)
         rotations = feet.plant(
-            state, self._legs, hips, rotations, contacts, _stands(state), dt, settings
+            state, self._legs, hips, rotations, contacts, _stands(state), dt, self._settings
         )
         refining.remember(state, contacts, dt)
-        before_lift = state.terrain[:, 0].copy()
+        return rotations
+
+    def _lay(
+        self,
+        state: Characters,
+        hips: Vectors,
+        rotations: Quaternions,
+        delta: Floats,
+        dt: Floats,
+    ) -> None:
+        """Lay those who were told of ground onto it, in place."""
+        before = state.terrain[:, 0].copy()
         rows = contiguous(np.flatnonzero(state.has_ground))
-        if isinstance(rows, slice) or len(rows):
-            told = state.borrow(rows)
-            laid = ground.lay(told, self._legs, hips[rows], rotations[rows], dt[rows])
-            hips[rows], rotations[rows] = laid.hips, laid.rotations
-            state.put(rows, told)
-        delta[:, 1] += state.terrain[:, 0] - before_lift
-        timings.note("feet")
-        searched = reason > 0
-        return self._block(state, delta, hips, rotations, contacts, after, jumps, searched, timings)
+        told = state.borrow(rows)
+        laid = ground.lay(told, self._legs, hips[rows], rotations[rows], dt[rows])
+        hips[rows], rotations[rows] = laid.hips, laid.rotations
+        state.put(rows, told)
+        delta[:, 1] += state.terrain[:, 0] - before
 
     def consider(
         self, state: Characters, dt: Floats, sets: Sets
@@ -291,7 +335,7 @@ class Tick:
         small_dt = dt.astype(np.float32)
         done = np.zeros(len(state), np.bool_)
         if compiled.ENABLED:
-            done = self._footwork.apply(state, sample, pull, dt)
+            done = self._passes.stitch(state, sample, pull, dt)
         for index, stitcher in enumerate(STITCHERS):
             mine = contiguous(np.flatnonzero((state.stitched_by == index) & ~done))
             if not isinstance(mine, slice) and not len(mine):
@@ -315,49 +359,54 @@ class Tick:
     def _block(
         self,
         state: Characters,
-        delta: Floats,
+        played: Played,
         hips: Vectors,
         rotations: Quaternions,
-        contacts: Flags,
-        after: sampling.Moments,
         jumps: Jumps | None,
         searched: Flags,
         timings: "_Timings",
     ) -> Block:
-        bits = self._matcher.library.tag_bits[after.nearest]
-        entered = bits & ~state.tag_bits
-        before = state.contacts.copy()
-        state.tag_bits[...] = bits
-        state.contacts[...] = contacts
-        turn = quaternion.from_yaw(state.root_yaw)
-        targets = np.where(state.locked[..., None], state.lock_point, np.nan)
-        targets[..., 1] += state.terrain[:, 1:3]
-        position = state.root_position.copy()
-        position[:, 1] += state.terrain[:, 0]
-        simulated = np.concatenate(
-            [
-                state.sim_position[:, :1],
-                position[:, 1:2],
-                state.sim_position[:, 1:],
-                state.sim_yaw[:, None],
-            ],
-            axis=1,
-        )
+        seen = self._passes.tell if compiled.ENABLED else self._tell
+        told = seen(state, played)
         return Block(
-            np.concatenate([position, turn], axis=1).astype(np.float32),
-            delta.astype(np.float32),
+            told.root,
+            told.root_delta,
             hips,
             rotations,
-            contacts,
-            before,
-            targets.astype(np.float32),
-            simulated.astype(np.float32),
-            entered,
+            played.contacts,
+            told.contacts_before,
+            told.foot_targets,
+            told.simulated_root,
+            told.tags_entered,
             jumps,
             searched,
             timings.elapsed_ms,
             np.where(state.stitched_by == _REFINE, state.fallback, 0),
             state.refined_frames.copy(),
+        )
+
+    def _tell(self, state: Characters, played: Played) -> Told:
+        """Return what a block tells of the state; contacts and tags are noted for the next one."""
+        after = sampling.Moments(played.rows, played.weight)
+        bits = self._matcher.library.tag_bits[after.nearest]
+        entered = bits & ~state.tag_bits
+        before = state.contacts.copy()
+        state.tag_bits[...] = bits
+        state.contacts[...] = played.contacts
+        targets = np.where(state.locked[..., None], state.lock_point, np.nan)
+        targets[..., 1] += state.terrain[:, 1:3]
+        position = state.root_position.copy()
+        position[:, 1] += state.terrain[:, 0]
+        x, z = state.sim_position.T
+        simulated = np.stack([x, position[:, 1], z, state.sim_yaw], axis=1)
+        turn = quaternion.from_yaw(state.root_yaw)
+        return Told(
+            np.concatenate([position, turn], axis=1).astype(np.float32),
+            played.delta.astype(np.float32),
+            targets.astype(np.float32),
+            simulated.astype(np.float32),
+            entered,
+            before,
         )
 
 
