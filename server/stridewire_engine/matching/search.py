@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stridewire.motion.array_types import Flags, Floats, Indices
+from stridewire_engine import compiled
+from stridewire_engine.compiled.ranking import rank
 from stridewire_engine.library import Library, LibraryError
 from stridewire_engine.matching.candidates import Candidates, CandidateSet
 from stridewire_engine.matching.features import Normalisation
@@ -128,10 +130,22 @@ class Matcher:
     ) -> Found:
         augmented = augment_queries(self.schema, queries, weights)
         rows = among.nearest(augmented, ask, exhaustive=exhaustive)
+        if compiled.ENABLED and k == 1:
+            return self._best(queries, weights, rows, excluded)
         allowed = rows >= 0
         for column in excluded.T:
             allowed &= ~self.near(rows, column[:, None])
         return self._rank(queries, weights, rows, allowed, k)
+
+    def _best(self, queries: Floats, weights: Floats, rows: Indices, excluded: Indices) -> Found:
+        """Return the best of candidates `(N, K)` in a compiled pass."""
+        found = Found.nothing(len(queries), len(self.schema.channels))
+        rank(
+            self.library.features, self.schema.channel_of, self.bias, self.library.clip_of,
+            NEIGHBOURHOOD_FRAMES, queries, weights, rows, excluded, found.rows, found.costs,
+            found.channel_costs,
+        )  # fmt: skip
+        return found
 
     def _rank(
         self, queries: Floats, weights: Floats, rows: Indices, allowed: Flags, k: int

@@ -53,6 +53,10 @@ class Jumps(NamedTuple):
     sets: Indices
     """`(M,)` numbers of the candidate sets."""
 
+    def take(self, which: Indices) -> "Jumps":
+        """Return some of them."""
+        return Jumps(**{name: array[which] for name, array in self._asdict().items()})
+
 
 def due(
     state: Characters, matcher: Matcher, stands: Flags, dt: Floats, settings: TickSettings

@@ -14,14 +14,17 @@ from stridewire_engine.compiled import feet, footing, intent, lookahead, playbac
 from stridewire_engine.compiled.feet import Locks, Shown
 from stridewire_engine.compiled.footing import Toes
 from stridewire_engine.compiled.intent import Halflives, Reasons, Turns, Wants
+from stridewire_engine.compiled.jumping import Handed, Leaps, hand_over
 from stridewire_engine.compiled.lookahead import Plays
 from stridewire_engine.compiled.moments import Clips
+from stridewire_engine.compiled.plans import Past
 from stridewire_engine.compiled.playback import Moves, Played, Pull
 from stridewire_engine.compiled.showing import Seen, Told
 from stridewire_engine.compiled.stance import Body, LegJoints, Scene, stance
 from stridewire_engine.library import Library
 from stridewire_engine.networks.rmr.plans import FRAME_RATE
 from stridewire_engine.runtime.characters import Characters
+from stridewire_engine.runtime.choice import Jumps
 from stridewire_engine.runtime.intent import Prediction
 from stridewire_engine.runtime.lookahead import LegTracks, fading
 from stridewire_engine.runtime.response import QUALITY, RESPONSE, Multiples
@@ -33,7 +36,9 @@ from stridewire_engine.stitchers.legs import Legs
 _REFINE = STITCHER_NAMES.index("refine")
 _MINE = np.array([stitcher.plants_feet for stitcher in STITCHERS])
 _REASONS = Reasons(*(int(TransitionReason[name.upper()]) for name in Reasons._fields))
-ColumnsT = TypeVar("ColumnsT", Wants, Moves, Body, Toes, Plays, Locks, Shown, Seen, Turns, Pull)
+ColumnsT = TypeVar(
+    "ColumnsT", Wants, Moves, Body, Toes, Plays, Locks, Shown, Seen, Turns, Pull, Past, Handed
+)
 
 
 class Passes:
@@ -59,11 +64,9 @@ class Passes:
             settings: Of the tick.
         """
         self._library, self._times, self._settings = library, times, settings
-        self._clips = _clips(library, tracks)
+        self._clips = clips_of(library, tracks)
         self._spans = playback.Spans(*spans)
-        own_pace = np.zeros(len(library.skeleton), np.bool_)
-        own_pace[np.append(legs.joints, legs.toe)] = True
-        self._legs = LegJoints(*legs, own_pace=own_pace)
+        self._legs = joints_of(legs, len(library.skeleton))
         ahead = np.array(STITCHERS[_REFINE].looks_ahead)
         self._scene = Scene(
             self._clips,
@@ -86,10 +89,15 @@ class Passes:
         future = Prediction(np.empty((count, ahead, 2)), np.empty((count, ahead)))
         reason = np.empty(count, np.int8)
         intent.look(
-            _columns(Wants, state), self._clips, self._spans.first, self._times, self._halflives,
+            columns(Wants, state), self._clips, self._spans.first, self._times, self._halflives,
             self._turns, _REASONS, dt, *future, reason,
         )  # fmt: skip
         return future, reason
+
+    def hand_over(self, state: Characters, jumps: Jumps, which: Flags) -> None:
+        """Hand over `which` `(M,)` of those who jump; their stitchers plant feet."""
+        leaps = Leaps(*[getattr(jumps, name)[which] for name in Leaps._fields])
+        hand_over(columns(Handed, state), self._clips, leaps)
 
     def play(self, state: Characters, dt: Floats) -> Played:
         """Advance clips and roots and return what the clips show."""
@@ -104,7 +112,7 @@ class Passes:
             np.empty((count, 4)),
         )
         playback.play(
-            _columns(Wants, state), _columns(Moves, state), self._clips, self._spans,
+            columns(Wants, state), columns(Moves, state), self._clips, self._spans,
             self._halflives, self._turns, self._pull, dt, played,
         )  # fmt: skip
         return played
@@ -120,7 +128,7 @@ class Passes:
         """
         mine = _MINE[state.stitched_by]
         stance(
-            self._scene, _columns(Body, state), _columns(Toes, state), _columns(Plays, state),
+            self._scene, columns(Body, state), columns(Toes, state), columns(Plays, state),
             np.flatnonzero(mine), state.stitched_by == _REFINE, state.root_position,
             state.root_yaw, sample.begins, pull, sample.contacts, dt, sample.hips,
             sample.rotations,
@@ -132,7 +140,7 @@ class Passes:
     ) -> None:
         """Lock toes and remember what is shown; rotations and contacts are changed in place."""
         feet.plant(
-            _columns(Locks, state), _columns(Shown, state), self._legs,
+            columns(Locks, state), columns(Shown, state), self._legs,
             _MINE[state.stitched_by], self._settings.foot_halflife,
             self._settings.unlock_distance, dt, hips, rotations, contacts,
         )  # fmt: skip
@@ -149,13 +157,21 @@ class Passes:
             np.empty((count, 4), np.bool_),
         )
         showing.tell(
-            _columns(Seen, state), self._library.tag_bits, played.rows, played.weight,
+            columns(Seen, state), self._library.tag_bits, played.rows, played.weight,
             played.delta, played.contacts, told,
         )  # fmt: skip
         return told
 
 
-def _clips(library: Library, tracks: LegTracks) -> Clips:
+def joints_of(legs: Legs, count: int) -> LegJoints:
+    """Return what kernels read of the legs of a skeleton of so many joints."""
+    own_pace = np.zeros(count, np.bool_)
+    own_pace[np.append(legs.joints, legs.toe)] = True
+    return LegJoints(*legs, own_pace=own_pace)
+
+
+def clips_of(library: Library, tracks: LegTracks) -> Clips:
+    """Return what kernels read of a library."""
     return Clips(
         library.clip_starts,
         library.clip_frames,
@@ -175,7 +191,7 @@ def _ends(multiples: Multiples) -> tuple[float, float]:
     return float(multiples.velocity_halflife), float(multiples.facing_halflife)
 
 
-def _columns(kind: type[ColumnsT], state: Characters) -> ColumnsT:
+def columns(kind: type[ColumnsT], state: Characters) -> ColumnsT:
     """Return the columns that a kernel asks for."""
     return kind(*[getattr(state, name) for name in kind._fields])
 

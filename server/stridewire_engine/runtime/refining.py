@@ -12,21 +12,21 @@ import numpy as np
 from stridewire._messages import FallbackReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Vectors
+from stridewire_engine import compiled
 from stridewire_engine.library import Library
 from stridewire_engine.networks.rmr import Guidance, Plans, Refiner
 from stridewire_engine.networks.rmr.plans import FRAME_RATE, WINDOW
 from stridewire_engine.runtime import sampling
 from stridewire_engine.runtime.characters import GUIDED_FRAMES, PAST_FRAMES, Characters
+from stridewire_engine.runtime.drafting import LED, Answer, Drafts
 from stridewire_engine.runtime.lookahead import LegTracks
 from stridewire_engine.stitchers import Guide, Roots, Sample
 from stridewire_engine.stitchers.footing import decay
 from stridewire_engine.stitchers.legs import LegPose, Legs, leg_pose
 from stridewire_engine.stitchers.stitcher import turn_to_root, turn_to_world
 
-MOST_A_TICK = 16
+MOST_A_TICK = 64
 """Transitions that are refined in one tick; a count, so that a replay decides alike."""
-_LED = 0.5
-"""Share of the offsets that swings are led by; all of them jerk knees."""
 _LOWER = 9
 """The reference's first joints: hips and legs."""
 _HALFLIFE = 0.1
@@ -58,30 +58,37 @@ class Refining:
         """
         self._library, self._tracks, self._legs = library, tracks, legs
         self._refiner, self._halflife = refiner, halflife
+        self._drafts = Drafts(library, tracks, legs, refiner, halflife)
 
-    def plan(self, rows: Characters) -> None:
+    def plan(self, state: Characters, which: Indices) -> None:
         """Ask about characters that have just jumped; their guides and fallbacks are set.
 
         Args:
-            rows: M of them, stitched by `refine`, set to their new moments.
+            state: All rows of the tick.
+            which: `(M,)` those that are stitched by `refine`, set to their new moments.
         """
-        rows.guide_frames[...] = 0
-        rows.fallback[...] = np.where(
-            rows.past_uneven, FallbackReason.OTHER_RATE, FallbackReason.TOO_FEW_FRAMES
+        fallback = np.where(
+            state.past_uneven[which], FallbackReason.OTHER_RATE, FallbackReason.TOO_FEW_FRAMES
         )
-        known = np.flatnonzero(rows.past_frames >= PAST_FRAMES)
-        rows.fallback[known[MOST_A_TICK:]] = FallbackReason.BUSY
+        known = np.flatnonzero(state.past_frames[which] >= PAST_FRAMES)
+        fallback[known[MOST_A_TICK:]] = FallbackReason.BUSY
         known = known[:MOST_A_TICK]
-        if not len(known):
-            return
-        plans = self._plans(rows.borrow(known))
+        if len(known):
+            mine = which[known]
+            said = self._drafts.ask(state, mine) if compiled.ENABLED else self._ask(state, mine)
+            near = said.distance <= self._refiner.furthest
+            fallback[known] = np.where(near, _NO_FALLBACK, FallbackReason.UNLIKE_TRAINING)
+            chosen = mine[near]
+            state.guide_frames[chosen] = GUIDED_FRAMES
+            state.guide_planted[chosen] = said.planted[near]
+            state.guide_offset[chosen] = said.toe_offset[near]
+        state.fallback[which] = fallback
+
+    def _ask(self, state: Characters, which: Indices) -> Answer:
+        """Ask the network about characters `(M,)` whose past is known."""
+        plans, coming = self._plans(state.borrow(which)), slice(PAST_FRAMES, None)
         said = followed(plans, self._refiner.refine(plans))
-        near = said.distance <= self._refiner.furthest
-        rows.fallback[known] = np.where(near, _NO_FALLBACK, FallbackReason.UNLIKE_TRAINING)
-        chosen, coming = known[near], slice(PAST_FRAMES, None)
-        rows.guide_frames[chosen] = GUIDED_FRAMES
-        rows.guide_planted[chosen] = said.planted[near, coming]
-        rows.guide_offset[chosen] = said.toe_offset[near, coming]
+        return Answer(said.planted[:, coming], said.toe_offset[:, coming], said.distance)
 
     def _plans(self, rows: Characters) -> Plans:
         count = len(rows)
@@ -166,7 +173,7 @@ class Refining:
 def followed(plans: Plans, said: Guidance) -> Guidance:
     """Return what is followed of what the network said about clips on their own path."""
     planted = np.maximum(said.planted, plans.contacts)
-    return said._replace(planted=planted, toe_offset=_LED * said.toe_offset)
+    return said._replace(planted=planted, toe_offset=LED * said.toe_offset)
 
 
 def remember(state: Characters, contacts: Flags, dt: Floats) -> None:

@@ -49,6 +49,8 @@ from stridewire_engine.stitchers.stitcher import turn_to_world
 
 _AUTO_FRAMES = 24
 """So many frames of the new clip tell which stitcher hides a transition best."""
+_PLANTS = np.array([*(stitcher.plants_feet for stitcher in STITCHERS), False])
+"""By index; what `AUTO` will choose is not known yet."""
 _SPRING, _STANCE, _REFINE = (STITCHER_NAMES.index(name) for name in ("spring", "stance", "refine"))
 
 
@@ -207,7 +209,14 @@ class Tick:
             return rotations
         contacts &= ~np.repeat(state.toe_step > 0.0, 2, axis=1)
         rotations = feet.plant(
-            state, self._legs, hips, rotations, contacts, _stands(state), dt, self._settings
+            state,
+            self._legs,
+            hips,
+            rotations,
+            contacts,
+            _PLANTS[state.stitched_by],
+            dt,
+            self._settings,
         )
         refining.remember(state, contacts, dt)
         return rotations
@@ -253,8 +262,22 @@ class Tick:
 
     def _jump(self, state: Characters, jumps: Jumps) -> None:
         """Hand the jumping characters over to their stitchers and set them to their new moments."""
+        who = jumps.characters
+        by = state.stitcher[who]
+        rest = np.arange(len(who))
+        if compiled.ENABLED:
+            planting = _PLANTS[by]
+            self._passes.hand_over(state, jumps, planting)
+            rest = np.flatnonzero(~planting)
+        if len(rest):
+            rows = state.borrow(who[rest])
+            by[rest] = self._hand_over(rows, jumps.take(rest))
+            state.put(who[rest], rows)
+        self._begin(state, jumps, by)
+
+    def _hand_over(self, rows: Characters, jumps: Jumps) -> Indices:
+        """Take what is shown over into offsets from the new moments; return by which stitchers."""
         library = self._matcher.library
-        rows = state.borrow(jumps.characters)
         old = sampling.moments(library, np.maximum(jumps.from_clip, 0), jumps.from_time)
         new = sampling.moments(library, jumps.to_clip, jumps.to_time)
         rows.root_offset += sampling.root_velocity(library, old) * rows.pace[:, None]
@@ -264,8 +287,7 @@ class Tick:
         target = sampling.sample_motion(library, new, rows.pace, self._tracks.toes)
         offsets, roots = _stitch_state(rows), Roots(rows.root_position, rows.root_yaw)
         by = self._stitchers(rows, new, source, target)
-        plants = np.array([stitcher.plants_feet for stitcher in STITCHERS])
-        leaves = plants[rows.stitched_by] & ~plants[by]
+        leaves = _PLANTS[rows.stitched_by] & ~_PLANTS[by]
         if leaves.any():
             stance.leave(offsets, source, self._legs, leaves)
         for index, stitcher in enumerate(STITCHERS):
@@ -276,30 +298,28 @@ class Tick:
                 offsets.put(mine, part)
             if not stitcher.keeps_root_velocity:
                 rows.root_offset[mine] = 0.0
-        begins = jumps.reason == TransitionReason.START
-        offsets.clear(begins)
-        rows.root_offset[begins] = 0.0
-        rows.refined_frames[...] = refining.refined_frames(rows)
-        # there is nothing to hide where a character begins
-        rows.stitch_time[...] = np.where(begins, np.inf, 0.0)
-        rows.stitched_by[...] = by
         rows.clip[...], rows.clip_time[...] = jumps.to_clip, jumps.to_time
         rows.since_jump[...] = 0.0
         rows.recent[:, 1:], rows.recent[:, 0] = rows.recent[:, :-1].copy(), jumps.to_row
         rows.recent_time[:, 1:] = rows.recent_time[:, :-1].copy()
         rows.recent_time[:, 0] = rows.time
-        self._ask(rows, ~begins & (by == _REFINE))
-        state.put(jumps.characters, rows)
+        return by
 
-    def _ask(self, rows: Characters, refines: Flags) -> None:
-        """Ask the network about those whose transition it is to refine."""
-        rows.guide_frames[...] = 0
-        rows.fallback[...] = np.where(refines, self._unrefined, 0)
-        mine = np.flatnonzero(refines)
-        if len(mine) and self._refining is not None:
-            part = rows.borrow(mine)
-            self._refining.plan(part)
-            rows.put(mine, part)
+    def _begin(self, state: Characters, jumps: Jumps, by: Indices) -> None:
+        """Begin to hide the transitions by stitchers `(M,)`; the network is asked where wanted."""
+        who, begins = jumps.characters, jumps.reason == TransitionReason.START
+        if begins.any():
+            for name in (*STITCH_COLUMNS, "root_offset"):
+                getattr(state, name)[who[begins]] = 0.0
+        state.refined_frames[who] = refining.refined_frames(state.borrow(who))
+        # there is nothing to hide where a character begins
+        state.stitch_time[who] = np.where(begins, np.inf, 0.0)
+        state.stitched_by[who] = by
+        refines = ~begins & (by == _REFINE)
+        state.guide_frames[who] = 0
+        state.fallback[who] = np.where(refines, self._unrefined, 0)
+        if refines.any() and self._refining is not None:
+            self._refining.plan(state, who[refines])
 
     def _stitchers(
         self, rows: Characters, new: sampling.Moments, source: Motion, target: Motion
@@ -408,11 +428,6 @@ class Tick:
             entered,
             before,
         )
-
-
-def _stands(state: Characters) -> Flags:
-    """Tell whose stitcher plants the feet."""
-    return np.array([stitcher.plants_feet for stitcher in STITCHERS])[state.stitched_by]
 
 
 def _stitch_state(state: Characters) -> StitchState:
