@@ -174,7 +174,7 @@ def _swing_halflife(
     halflife = min(_SHORTEST * (1.0 + 0.5 / max(speed, 1e-3)), _LONGEST)
     if toes.toe_step[row, side] > 0.0:
         halflife = _STEP_HALFLIFE
-    x, y, z = point(toes.toe_gap[row : row + 1], 0, side)
+    x, y, z = point(toes.toe_gap, row, side)
     halflife = max(halflife, gentle_halflife(x, y, z, _STRONGEST_PULL))
     halflife /= max(toes.toe_swing[row, side], 0.1)
     return float(halflife + settled * (_BRAKE_HALFLIFE - halflife))

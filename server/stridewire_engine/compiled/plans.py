@@ -15,9 +15,10 @@ from stridewire_engine.compiled.stance import LegJoints, write
 from stridewire_engine.compiled.turns import (
     Vector,
     conjugate,
-    decay,
+    decayed,
     from_scaled_axis,
     multiply,
+    rate,
     to_scaled_axis,
 )
 
@@ -234,18 +235,19 @@ def _sprung(
     clips: Clips, past: Past, row: int, at: int, weight: float, time: float, draft: Draft
 ) -> Vector:
     """Write rotations of the lower joints and return the hips, what they are off by sprung out."""
+    y, e = rate(_HALFLIFE, time)
     for joint in range(draft.off.shape[0]):
         speed = past.offset_angular_velocity
-        tx, _ = decay(draft.off[joint, 0], speed[row, joint, 0], _HALFLIFE, time)
-        ty, _ = decay(draft.off[joint, 1], speed[row, joint, 1], _HALFLIFE, time)
-        tz, _ = decay(draft.off[joint, 2], speed[row, joint, 2], _HALFLIFE, time)
+        tx, _ = decayed(draft.off[joint, 0], speed[row, joint, 0], y, e, time)
+        ty, _ = decayed(draft.off[joint, 1], speed[row, joint, 1], y, e, time)
+        tz, _ = decayed(draft.off[joint, 2], speed[row, joint, 2], y, e, time)
         _mix(clips, at, weight, joint, draft)
         turn = multiply(from_scaled_axis((tx, ty, tz)), turn_of(draft.lower, 0, joint))
         write(draft.lower, 0, joint, turn)
-    away, rate = past.offset_hips, past.offset_hips_velocity
-    mx, _ = decay(away[row, 0], rate[row, 0], _HALFLIFE, time)
-    my, _ = decay(away[row, 1] - past.hip_drop[row], rate[row, 1], _HALFLIFE, time)
-    mz, _ = decay(away[row, 2], rate[row, 2], _HALFLIFE, time)
+    away, goes = past.offset_hips, past.offset_hips_velocity
+    mx, _ = decayed(away[row, 0], goes[row, 0], y, e, time)
+    my, _ = decayed(away[row, 1] - past.hip_drop[row], goes[row, 1], y, e, time)
+    mz, _ = decayed(away[row, 2], goes[row, 2], y, e, time)
     hips = clips.hips
     return (
         hips[at, 0] + weight * (hips[at + 1, 0] - hips[at, 0]) + mx,

@@ -25,15 +25,17 @@ from stridewire_engine.compiled.moments import Clips
 from stridewire_engine.compiled.turns import (
     Vector,
     decay,
+    decayed,
     from_scaled_axis,
     multiply,
+    rate,
     to_root,
     to_world,
 )
 
-_BODY_HALFLIFE = 0.1
+BODY_HALFLIFE = 0.1
+"""Of hips and joints, and of gaps that are looked ahead of."""
 _DEEPEST_DROP, _DROP_HALFLIFE = 0.08, 0.1
-_GAP_HALFLIFE = 0.1
 _REACH = 0.985
 _PLANTED = 0.5
 
@@ -74,6 +76,8 @@ class Scene(NamedTuple):
     """`(K,)` seconds ahead."""
     faded: Floats
     """`(K,)` seconds for which the root's velocity difference counts until then."""
+    rates: Floats
+    """`(K, 2)` of gaps and of the hips' offset until then, as `turns.rate` has them."""
     frame_rate: float
     """Of guides."""
     ahead: Ahead
@@ -183,20 +187,21 @@ def _spring(
     body: Body, legs: LegJoints, row: int, dt: float, hips: Vectors, rotations: Quaternions
 ) -> None:
     """Let the offsets of hips and joints decay and add them to the pose."""
-    halflife = max(body.body_halflife[row, 0], _BODY_HALFLIFE)
+    usual_y, usual_e = rate(BODY_HALFLIFE, dt)
+    y, e = usual_y, usual_e
+    if body.body_halflife[row, 0] > BODY_HALFLIFE:
+        y, e = rate(body.body_halflife[row, 0], dt)
     for axis in range(3):
-        x, v = decay(
-            body.offset_hips[row, axis], body.offset_hips_velocity[row, axis], halflife, dt
-        )
+        x, v = decayed(body.offset_hips[row, axis], body.offset_hips_velocity[row, axis], y, e, dt)
         body.offset_hips[row, axis], body.offset_hips_velocity[row, axis] = x, v
         hips[row, axis] += x
     offset, speed = body.offset_rotations, body.offset_angular_velocity
     for joint in range(rotations.shape[1]):
-        halflife = _BODY_HALFLIFE
-        if not legs.own_pace[joint]:
-            halflife = max(body.body_halflife[row, 1 + joint], _BODY_HALFLIFE)
+        y, e = usual_y, usual_e
+        if body.body_halflife[row, 1 + joint] > BODY_HALFLIFE and not legs.own_pace[joint]:
+            y, e = rate(body.body_halflife[row, 1 + joint], dt)
         for axis in range(3):
-            x, v = decay(offset[row, joint, axis], speed[row, joint, axis], halflife, dt)
+            x, v = decayed(offset[row, joint, axis], speed[row, joint, axis], y, e, dt)
             offset[row, joint, axis], speed[row, joint, axis] = x, v
         turn = from_scaled_axis(
             (
@@ -254,8 +259,8 @@ def _need(
     now = _seen(steps.toe[side, 0] - root[0], steps.toe[side, 1] - root[1],
                 steps.toe[side, 2] - root[2], sine, cosine)  # fmt: skip
     gap, speed = toes.toe_gap, toes.toe_gap_speed
-    gx, gy, gz = to_root(point(gap[row : row + 1], 0, side), sine, cosine)
-    sx, sy, sz = to_root(point(speed[row : row + 1], 0, side), sine, cosine)
+    gx, gy, gz = to_root(point(gap, row, side), sine, cosine)
+    sx, sy, sz = to_root(point(speed, row, side), sine, cosine)
     needed, stays = 0.0, steps.stands[side]
     for k in range(len(times)):
         # a foothold lasts until the first time ahead at which the foot swings
@@ -265,25 +270,27 @@ def _need(
         )  # fmt: skip
         aim = now
         if not stays:
-            cx, _ = decay(gx, sx, _GAP_HALFLIFE, times[k])
-            cy, _ = decay(gy, sy, _GAP_HALFLIFE, times[k])
-            cz, _ = decay(gz, sz, _GAP_HALFLIFE, times[k])
+            y, e = scene.rates[k, 0], scene.rates[k, 1]
+            cx, _ = decayed(gx, sx, y, e, times[k])
+            cy, _ = decayed(gy, sy, y, e, times[k])
+            cz, _ = decayed(gz, sz, y, e, times[k])
             aim = (toe[0] + cx, toe[1] + cy, toe[2] + cz)
         reach = max(_REACH * scene.legs.length, length(less(hip, ankle)))
-        away = less(add(hip, _fading(body, row, times[k])), add(aim, less(ankle, toe)))
+        away = less(add(hip, _fading(scene, body, row, k)), add(aim, less(ankle, toe)))
         aside = math.hypot(away[0], away[2])
         needed = max(needed, away[1] - math.sqrt(max(reach**2 - aside**2, 0.0)))
     return needed
 
 
 @kernel
-def _fading(body: Body, row: int, time: float) -> Vector:
-    """Return what is left of the hips' offset after a time."""
+def _fading(scene: Scene, body: Body, row: int, k: int) -> Vector:
+    """Return what is left of the hips' offset at a time ahead."""
+    y, e, time = scene.rates[k, 0], scene.rates[k, 1], scene.times[k]
     offset, speed = body.offset_hips, body.offset_hips_velocity
-    x, _ = decay(offset[row, 0], speed[row, 0], _BODY_HALFLIFE, time)
-    y, _ = decay(offset[row, 1], speed[row, 1], _BODY_HALFLIFE, time)
-    z, _ = decay(offset[row, 2], speed[row, 2], _BODY_HALFLIFE, time)
-    return x, y, z
+    dx, _ = decayed(offset[row, 0], speed[row, 0], y, e, time)
+    dy, _ = decayed(offset[row, 1], speed[row, 1], y, e, time)
+    dz, _ = decayed(offset[row, 2], speed[row, 2], y, e, time)
+    return dx, dy, dz
 
 
 @kernel

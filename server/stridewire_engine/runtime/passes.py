@@ -20,7 +20,8 @@ from stridewire_engine.compiled.moments import Clips
 from stridewire_engine.compiled.plans import Past
 from stridewire_engine.compiled.playback import Moves, Played, Pull
 from stridewire_engine.compiled.showing import Seen, Told
-from stridewire_engine.compiled.stance import Body, LegJoints, Scene, stance
+from stridewire_engine.compiled.stance import BODY_HALFLIFE, Body, LegJoints, Scene, stance
+from stridewire_engine.compiled.turns import rate
 from stridewire_engine.library import Library
 from stridewire_engine.networks.rmr.plans import FRAME_RATE
 from stridewire_engine.runtime.characters import Characters
@@ -73,6 +74,7 @@ class Passes:
             self._legs,
             ahead,
             fading(ahead, settings.root_halflife),
+            np.array([rate(BODY_HALFLIFE, float(time)) for time in ahead]),
             FRAME_RATE,
             lookahead.scratch(len(ahead)),
             footing.scratch(),
