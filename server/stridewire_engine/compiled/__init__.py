@@ -30,7 +30,7 @@ def kernel(function: FunctionT) -> FunctionT:
     config: Any = numba.config
     before, config.CACHE_DIR = config.CACHE_DIR, str(_CACHE)
     # without inlining every call would count references to every array of its named tuples
-    how = {"cache": True, "nogil": True, "error_model": "numpy", "forceinline": True}
+    how: Any = {"cache": True, "nogil": True, "error_model": "numpy", "forceinline": True}
     try:
         compiled = numba.njit(**how)(function)
     finally:
