@@ -1,13 +1,13 @@
 """The server process: services, health and reflection around one runtime."""
 
 import grpc
+import numpy as np
 from grpc_health.v1 import health, health_pb2, health_pb2_grpc
 from grpc_reflection.v1alpha import reflection
 
 from stridewire._messages import CharacterSpec, Open, Step
 from stridewire.v1 import (
     animation_pb2,
-    animation_pb2_grpc,
     blend_pb2,
     blend_pb2_grpc,
     library_pb2,
@@ -19,10 +19,11 @@ from stridewire.v1 import (
 )
 from stridewire_engine.networks.blend import blend_network
 from stridewire_engine.runtime import Runtime
+from stridewire_engine.stitchers import STITCHER_NAMES
 from stridewire_server.interceptors import ErrorInterceptor
 from stridewire_server.page.site import Site
+from stridewire_server.services import animation
 from stridewire_server.services.about import ServerService
-from stridewire_server.services.animation import AnimationService
 from stridewire_server.services.blend import BlendService
 from stridewire_server.services.library import LibraryService
 from stridewire_server.services.match import MatchService
@@ -35,6 +36,9 @@ from stridewire_server.websocket.door import Talk, WebSocketDoor
 
 _GRACE_S = 0.5
 """For calls that are still open when the time of open sessions is up."""
+
+_WARM_FRAMES, _TURN_EVERY = 120, 30
+"""So long that every stitcher, the network included, has hidden a transition."""
 
 _READY = (
     animation_pb2.DESCRIPTOR.services_by_name["AnimationService"].full_name,
@@ -112,8 +116,8 @@ class AnimationServer:
 
     def _register(self) -> None:
         server, ticker = self._server, self._ticker
-        animation_pb2_grpc.add_AnimationServiceServicer_to_server(
-            AnimationService(self._sessions, ticker.runtime.limits), server
+        animation.add_to_server(
+            animation.AnimationService(self._sessions, ticker.runtime.limits), server
         )
         match_pb2_grpc.add_MatchServiceServicer_to_server(MatchService(ticker), server)
         library_pb2_grpc.add_LibraryServiceServicer_to_server(
@@ -144,14 +148,20 @@ class AnimationServer:
 
 
 def warm_up(runtime: Runtime) -> None:
-    """Make a first frame from every library, so that no caller pays for pages and caches.
+    """Drive every library for a while, so that no caller pays for pages, caches and compiling.
 
     Raises:
         ModelError: If a network that comes with the package is damaged.
     """
     blend_network()
     for name in runtime.libraries:
-        session = runtime.open(Open([CharacterSpec(0)], library=name))
-        for _ in range(2):
-            runtime.advance([(session, Step())])
+        specs = [CharacterSpec(i, stitcher=stitcher) for i, stitcher in enumerate(STITCHER_NAMES)]
+        session = runtime.open(Open(specs, library=name))
+        for number in range(_WARM_FRAMES):
+            way = np.array([0.0, 1.5] if number // _TURN_EVERY % 2 else [1.5, 0.0], np.float32)
+            facing = np.full(len(specs), np.nan, np.float32)
+            step = Step(
+                number, 1 / 60, velocity_xz=np.tile(way, (len(specs), 1)), facing_yaw=facing
+            )
+            runtime.advance([(session, step)])
         runtime.close(session)

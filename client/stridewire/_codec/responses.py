@@ -10,6 +10,7 @@ from stridewire._codec.blocks import (
     write_halves,
 )
 from stridewire._codec.events import decode_event, encode_event
+from stridewire._codec.frames import frame_bytes
 from stridewire._codec.shared import (
     decode_library_info,
     decode_limits,
@@ -48,6 +49,13 @@ def encode_response(message: ServerMessage) -> pb.AnimateResponse:
             return pb.AnimateResponse(notice=pb.Notice(**vars(message)))
         case _:
             assert_never(message)
+
+
+def response_bytes(message: ServerMessage) -> bytes:
+    """Return a message of a server as it lies on the wire; frames the fast way."""
+    if isinstance(message, Frame):
+        return frame_bytes(message)
+    return encode_response(message).SerializeToString()
 
 
 def decode_response(wire: pb.AnimateResponse) -> ServerMessage:

@@ -10,9 +10,8 @@ from stridewire.motion.array_types import Flags, Floats, Indices
 from stridewire.motion.springs import wrap_angle
 from stridewire_engine.matching.candidates import CandidateSet
 from stridewire_engine.matching.explanation import Exclusion
-from stridewire_engine.matching.schema import ChannelKind
 from stridewire_engine.matching.search import Found, Matcher
-from stridewire_engine.runtime import query, sampling
+from stridewire_engine.runtime import query
 from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.runtime.intent import Prediction
 from stridewire_engine.runtime.response import multiples
@@ -161,19 +160,13 @@ def consider(
     settings: TickSettings,
 ) -> Considered:
     """Search for the characters that have a reason, and say who is to jump; nothing is changed."""
-    library = matcher.library
     searching = np.flatnonzero(reason)
     rows = state.borrow(searching)
-    why = reason[searching]
-    starting = rows.clip < 0
-    playing = sampling.moments(library, np.maximum(rows.clip, 0), rows.clip_time).nearest
-    future = Prediction(prediction.positions[searching], prediction.yaws[searching])
-    queries = query.build(rows, matcher, playing, future)
-    weights = _weights(matcher, rows, starting)
-    excluded = _excluded(matcher, rows, playing, starting, settings)
+    why, starting = reason[searching], rows.clip < 0
+    asked = query.ask(state, searching, matcher, prediction, settings)
+    playing, queries, weights, excluded, stay_costs = asked
     found, satisfied = _search(matcher, sets, rows.filter, queries, weights, excluded, playing)
     why = np.where(~satisfied & ~starting, TransitionReason.FILTER_CHANGE, why)
-    stay_costs = matcher.costs(queries, weights, playing[:, None])[:, 0]
     stay = stay_costs.sum(axis=-1) + matcher.bias[playing]
     bias = settings.continuing_bias * matcher.typical_cost + settings.least_improvement * stay
     bias *= multiples(rows.responsiveness).bias
@@ -226,34 +219,6 @@ def _at_end(state: Characters, matcher: Matcher, dt: Floats, settings: TickSetti
     length = (library.clip_frames[clip] - 1) / library.frame_rate
     ends = state.clip_time + dt > length - settings.clip_end_margin
     return np.asarray(ends & ~library.loops[clip])
-
-
-def _excluded(
-    matcher: Matcher,
-    rows: Characters,
-    playing: Indices,
-    starting: Flags,
-    settings: TickSettings,
-) -> Indices:
-    """Return rows `(M, E)` whose neighbourhood is not to be chosen; -1 for none."""
-    library = matcher.library
-    twin = library.twins[library.clip_of[playing]]
-    frame = playing - library.clip_starts[library.clip_of[playing]]
-    mirrored = np.where(twin >= 0, library.clip_starts[twin] + frame, -1)
-    own = np.where(starting[:, None], -1, np.stack([playing, mirrored], axis=1))
-    young = rows.time[:, None] - rows.recent_time < settings.reselect_history
-    return np.concatenate([own, np.where(young, rows.recent, -1)], axis=1)
-
-
-def _weights(matcher: Matcher, rows: Characters, starting: Flags) -> Floats:
-    weights = rows.weights.copy()
-    trajectories = np.array([channel.is_trajectory for channel in matcher.schema.channels])
-    weights[:, trajectories] *= np.asarray(multiples(rows.responsiveness).trajectory)[:, None]
-    # a character that begins has velocities and a way to go, but no pose yet
-    channels = matcher.schema.channels
-    poses = np.array([not c.is_trajectory and c.kind is not ChannelKind.VELOCITY for c in channels])
-    weights[np.ix_(starting, poses)] = 0.0
-    return weights
 
 
 def _restart_clocks(state: Characters, searched: Indices, settings: TickSettings) -> None:

@@ -3,7 +3,7 @@
 Whatever is wrong is left out, so that the previous control holds, and told.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -76,6 +76,36 @@ def apply_step(roster: Roster, crowd: Crowd, step: Step, limits: Limits) -> Iter
         state.desired_facing[rows] = facing[good]
     for i, sparse in enumerate(step.sparse):
         yield from _apply_sparse(roster, crowd, f"step.sparse[{i}]", sparse)
+
+
+def is_plain(step: Step, count: int) -> bool:
+    """Tell whether a step says nothing but velocities and facings of all of `count` characters."""
+    return (
+        step.characters is None
+        and not step.sparse
+        and step.velocity_xz is not None
+        and step.facing_yaw is not None
+        and np.shape(step.velocity_xz) == (count, 2)
+        and np.shape(step.facing_yaw) == (count,)
+    )
+
+
+def apply_plain(plain: Sequence[tuple[Roster, Step]], state: Characters, limits: Limits) -> bool:
+    """Apply plain steps of many sessions at once; if any of them is wrong, none is applied."""
+    velocity = np.concatenate([_given(step.velocity_xz) for _, step in plain])
+    facing = np.concatenate([_given(step.facing_yaw) for _, step in plain])
+    if not (np.abs(velocity) <= limits.max_speed).all() or np.isinf(facing).any():
+        return False
+    rows = np.concatenate([roster.rows for roster, _ in plain])
+    scales = np.concatenate([roster.scales for roster, _ in plain])
+    state.desired_velocity[rows] = velocity / scales[:, None]
+    state.desired_facing[rows] = facing
+    state.has_path[rows] = False
+    return True
+
+
+def _given(values: Floats | None) -> Floats:
+    return np.asarray(values, np.float64)
 
 
 def place(state: Characters, rows: Indices, positions: Floats, yaws: Floats) -> None:

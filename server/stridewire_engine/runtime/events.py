@@ -52,7 +52,7 @@ class TickEvents(Sequence[Event]):
 
     @cached_property
     def _events(self) -> list[Event]:
-        if self.detail is Detail.NONE:
+        if self.detail is Detail.NONE or not self.block.eventful[self.rows].any():
             return []
         return [*self._transitions(), *self._contacts(), *self._tags()]
 

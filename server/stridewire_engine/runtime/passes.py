@@ -4,7 +4,7 @@ They do what `intent`, `standing`, `choice.due`, `sampling`, `root`, `lookahead`
 `Stance.apply` and `feet` do, without the arrays in between.
 """
 
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from stridewire_engine.compiled.intent import Halflives, Reasons, Turns, Wants
 from stridewire_engine.compiled.jumping import Handed, Leaps, hand_over
 from stridewire_engine.compiled.lookahead import Plays
 from stridewire_engine.compiled.moments import Clips
-from stridewire_engine.compiled.plans import Past
 from stridewire_engine.compiled.playback import Moves, Played, Pull
 from stridewire_engine.compiled.showing import Seen, Told
 from stridewire_engine.compiled.stance import BODY_HALFLIFE, Body, LegJoints, Scene, stance
@@ -25,7 +24,6 @@ from stridewire_engine.compiled.turns import rate
 from stridewire_engine.library import Library
 from stridewire_engine.networks.rmr.plans import FRAME_RATE
 from stridewire_engine.runtime.characters import Characters
-from stridewire_engine.runtime.choice import Jumps
 from stridewire_engine.runtime.intent import Prediction
 from stridewire_engine.runtime.lookahead import LegTracks, fading
 from stridewire_engine.runtime.response import QUALITY, RESPONSE, Multiples
@@ -37,9 +35,7 @@ from stridewire_engine.stitchers.legs import Legs
 _REFINE = STITCHER_NAMES.index("refine")
 _MINE = np.array([stitcher.plants_feet for stitcher in STITCHERS])
 _REASONS = Reasons(*(int(TransitionReason[name.upper()]) for name in Reasons._fields))
-ColumnsT = TypeVar(
-    "ColumnsT", Wants, Moves, Body, Toes, Plays, Locks, Shown, Seen, Turns, Pull, Past, Handed
-)
+ColumnsT = TypeVar("ColumnsT", bound=NamedTuple)
 
 
 class Passes:
@@ -96,9 +92,8 @@ class Passes:
         )  # fmt: skip
         return future, reason
 
-    def hand_over(self, state: Characters, jumps: Jumps, which: Flags) -> None:
-        """Hand over `which` `(M,)` of those who jump; their stitchers plant feet."""
-        leaps = Leaps(*[getattr(jumps, name)[which] for name in Leaps._fields])
+    def hand_over(self, state: Characters, leaps: Leaps) -> None:
+        """Hand over characters that jump and whose stitchers plant feet."""
         hand_over(columns(Handed, state), self._clips, leaps)
 
     def play(self, state: Characters, dt: Floats) -> Played:
@@ -172,8 +167,10 @@ def joints_of(legs: Legs, count: int) -> LegJoints:
     return LegJoints(*legs, own_pace=own_pace)
 
 
-def clips_of(library: Library, tracks: LegTracks) -> Clips:
-    """Return what kernels read of a library."""
+def clips_of(library: Library, tracks: LegTracks | None = None) -> Clips:
+    """Return what kernels read of a library; those that read no legs need no tracks."""
+    none = np.empty((0, 2, 3), np.float32)
+    hips, ankles, toes = tracks or (none, none, none)
     return Clips(
         library.clip_starts,
         library.clip_frames,
@@ -184,8 +181,10 @@ def clips_of(library: Library, tracks: LegTracks) -> Clips:
         library.hips,
         library.rotations,
         library.contacts,
-        *tracks,
-        frame_rate=float(library.frame_rate),
+        hips,
+        ankles,
+        toes,
+        float(library.frame_rate),
     )
 
 

@@ -2,14 +2,48 @@
 
 import numpy as np
 
-from stridewire.motion.array_types import Floats, Indices
+from stridewire.motion.array_types import Flags, Floats, Indices
+from stridewire_engine import compiled
+from stridewire_engine.compiled.asking import Asked
 from stridewire_engine.matching.features import trajectory_features
 from stridewire_engine.matching.schema import Channel, ChannelKind
 from stridewire_engine.matching.search import Matcher
-from stridewire_engine.runtime import intent
+from stridewire_engine.runtime import intent, sampling
+from stridewire_engine.runtime.asking import asking_of, needs_pose
 from stridewire_engine.runtime.characters import SHOWN_JOINTS, Characters
 from stridewire_engine.runtime.intent import Prediction
+from stridewire_engine.runtime.response import multiples
+from stridewire_engine.runtime.settings import TickSettings
 from stridewire_engine.stitchers import STITCHERS
+
+
+def ask(
+    state: Characters,
+    searching: Indices,
+    matcher: Matcher,
+    prediction: Prediction,
+    settings: TickSettings,
+) -> Asked:
+    """Return what characters ask, and what going on costs them.
+
+    Args:
+        state: N rows.
+        searching: `(M,)` which of them search.
+        matcher: The library's.
+        prediction: Where the simulated roots of all rows will be, in the world.
+        settings: How long choices are remembered.
+    """
+    if compiled.ENABLED:
+        return asking_of(matcher).ask(state, searching, prediction, settings.reselect_history)
+    rows, library = state.borrow(searching), matcher.library
+    starting = rows.clip < 0
+    playing = sampling.moments(library, np.maximum(rows.clip, 0), rows.clip_time).nearest
+    future = Prediction(prediction.positions[searching], prediction.yaws[searching])
+    queries = build(rows, matcher, playing, future)
+    weights = _weights(matcher, rows, starting)
+    excluded = _excluded(matcher, rows, playing, starting, settings)
+    stay_costs = matcher.costs(queries, weights, playing[:, None])[:, 0]
+    return Asked(playing, queries, weights, excluded, stay_costs)
 
 
 def build(rows: Characters, matcher: Matcher, playing: Indices, future: Prediction) -> Floats:
@@ -69,3 +103,30 @@ def _shown(rows: Characters, channel: Channel) -> Floats | None:
     if channel.kind is ChannelKind.VELOCITY:
         return rows.shown_velocity[:, which].reshape(len(rows), -1)
     return None
+
+
+def _excluded(
+    matcher: Matcher,
+    rows: Characters,
+    playing: Indices,
+    starting: Flags,
+    settings: TickSettings,
+) -> Indices:
+    """Return rows `(M, E)` whose neighbourhood is not to be chosen; -1 for none."""
+    library = matcher.library
+    twin = library.twins[library.clip_of[playing]]
+    frame = playing - library.clip_starts[library.clip_of[playing]]
+    mirrored = np.where(twin >= 0, library.clip_starts[twin] + frame, -1)
+    own = np.where(starting[:, None], -1, np.stack([playing, mirrored], axis=1))
+    young = rows.time[:, None] - rows.recent_time < settings.reselect_history
+    return np.concatenate([own, np.where(young, rows.recent, -1)], axis=1)
+
+
+def _weights(matcher: Matcher, rows: Characters, starting: Flags) -> Floats:
+    weights = rows.weights.copy()
+    channels = matcher.schema.channels
+    trajectories = np.array([channel.is_trajectory for channel in channels])
+    weights[:, trajectories] *= np.asarray(multiples(rows.responsiveness).trajectory)[:, None]
+    poses = np.array([needs_pose(channel) for channel in channels])
+    weights[np.ix_(starting, poses)] = 0.0
+    return weights

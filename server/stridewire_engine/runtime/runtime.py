@@ -5,7 +5,7 @@ its own.
 """
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass
 from itertools import count
 from typing import Any
@@ -43,7 +43,7 @@ from stridewire_engine import blending
 from stridewire_engine.library import Library, LibraryError
 from stridewire_engine.networks.blend import blend_network
 from stridewire_engine.networks.rmr.refiner import refiner_if_shipped
-from stridewire_engine.runtime import admission, catalogue, queries
+from stridewire_engine.runtime import admission, catalogue, controls, queries
 from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.output import Output
 from stridewire_engine.runtime.session import Session
@@ -191,7 +191,11 @@ class Runtime:
         for session, step in steps:
             if recording := self._recordings.get(session.id):
                 recording.advance(step)
-        begun = [_Due(session, *session.begin_tick(step)) for session, step in steps]
+        applied = self._apply_plain(steps)
+        begun = [
+            _Due(session, *session.begin_tick(step, session.id in applied))
+            for session, step in steps
+        ]
         frames: dict[str, Frame] = {}
         for crowd in {id(d.session.crowd): d.session.crowd for d in begun}.values():
             mine = [d for d in begun if d.session.crowd is crowd]
@@ -204,6 +208,19 @@ class Runtime:
             if name in frames:
                 recording.frame(frames[name])
         return [(frames[d.session.id], d.error) for d in begun]
+
+    def _apply_plain(self, steps: Sequence[tuple[Session, Step]]) -> Container[str]:
+        """Apply the plain steps of each crowd at once; return the sessions that were applied to."""
+        plain: dict[Crowd, list[tuple[Session, Step]]] = {}
+        for session, step in steps:
+            if controls.is_plain(step, len(session)):
+                plain.setdefault(session.crowd, []).append((session, step))
+        applied: set[str] = set()
+        for crowd, mine in plain.items():
+            told = [(session.roster, step) for session, step in mine]
+            if controls.apply_plain(told, crowd.state, self._limits):
+                applied.update(session.id for session, _ in mine)
+        return applied
 
     def ask(self, query: Query[AnswerT]) -> AnswerT:
         """Answer a query.

@@ -20,7 +20,6 @@ from stridewire._messages import (
     StreamError,
 )
 from stridewire.motion.array_types import Floats, Indices
-from stridewire.motion.contacts import to_mask
 from stridewire_engine.runtime import admission, controls
 from stridewire_engine.runtime.crowd import Crowd
 from stridewire_engine.runtime.events import TickEvents
@@ -98,14 +97,25 @@ class Session:
         nothing = Step(dt_s=dt_s)
         return replace(nothing, step=self._applied.step, client_time_s=self._applied.client_time_s)
 
-    def begin_tick(self, step: Step) -> tuple[Floats, StreamError | None]:
-        """Apply a step's controls and return how far to go, `(N,)` seconds, and what was wrong."""
+    def begin_tick(self, step: Step, applied: bool) -> tuple[Floats, StreamError | None]:
+        """Apply a step's controls and return how far to go, `(N,)` seconds, and what was wrong.
+
+        Args:
+            step: The step.
+            applied: Whether its controls are applied already, together with others'.
+        """
         dt, wrong = self._check_dt(step.dt_s)
         self._applied = step
-        wrong += controls.apply_step(self._roster, self.crowd, step, self._limits)
+        if not applied:
+            wrong += controls.apply_step(self._roster, self.crowd, step, self._limits)
         self._time += dt
         self._dt = dt
-        return np.full(len(self), dt), _error(step.step, wrong)
+        return np.full(len(self), dt), _error(step.step, wrong) if wrong else None
+
+    @property
+    def roster(self) -> Roster:
+        """Its characters."""
+        return self._roster
 
     def end_tick(self, block: Block, rows: slice) -> Frame:
         """Make the frame out of the session's rows of the tick's block."""
@@ -123,10 +133,9 @@ class Session:
             root_delta=shown.root_delta,
             hips=shown.hips,
             rotations=shown.rotations,
-            contacts=to_mask(block.contacts[rows]),
+            contacts=block.contact_mask[rows],
             foot_targets=shown.foot_targets,
-            flags=self._roster.take_flags()
-            | ((block.fallback[rows] > 0).astype(np.uint32) << np.uint32(FrameFlag.FALLBACK)),
+            flags=self._roster.take_flags() | block.fallback_flags[rows],
             simulated_root=shown.simulated_root if detail >= Detail.COSTS else None,
             inside=look(crowd, self.rows, self._roster.scales) if detail is Detail.INSIDE else None,
             events=TickEvents(block, rows, ids, self._frame, detail, crowd.matcher, crowd.sets),

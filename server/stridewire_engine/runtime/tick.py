@@ -5,14 +5,17 @@ Intent, search, playback, root, stitch, feet. Arrays in, arrays out; no loop ove
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from stridewire._messages import FallbackReason, TransitionReason
+from stridewire._messages import FallbackReason, FrameFlag, TransitionReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
+from stridewire.motion.contacts import to_mask
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine import compiled
+from stridewire_engine.compiled.jumping import Leaps
 from stridewire_engine.compiled.playback import Played
 from stridewire_engine.compiled.showing import Told
 from stridewire_engine.matching.search import Matcher
@@ -85,6 +88,24 @@ class Block:
     """`(N,)` why who asked for `refine` is stitched by `stance`: a `FallbackReason`, or 0."""
     refined_frames: Indices
     """`(N,)` for how many frames a network guided feet after the transition before the last."""
+
+    @cached_property
+    def eventful(self) -> Flags:
+        """`(N,)` who has something to tell: most have not, in most ticks."""
+        told = np.any(self.contacts != self.contacts_before, axis=1) | (self.tags_entered > 0)
+        if self.jumps is not None:
+            told[self.jumps.characters] = True
+        return np.asarray(told)
+
+    @cached_property
+    def contact_mask(self) -> Indices:
+        """`(N,)` contacts as bits."""
+        return to_mask(self.contacts)
+
+    @cached_property
+    def fallback_flags(self) -> Indices:
+        """`(N,)` the flag of those whom a network does not guide though it should."""
+        return (self.fallback > 0).astype(np.uint32) << np.uint32(FrameFlag.FALLBACK)
 
 
 class Tick:
@@ -267,7 +288,8 @@ class Tick:
         rest = np.arange(len(who))
         if compiled.ENABLED:
             planting = _PLANTS[by]
-            self._passes.hand_over(state, jumps, planting)
+            taken = [getattr(jumps, name)[planting] for name in Leaps._fields]
+            self._passes.hand_over(state, Leaps(*taken))
             rest = np.flatnonzero(~planting)
         if len(rest):
             rows = state.borrow(who[rest])

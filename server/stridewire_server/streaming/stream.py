@@ -45,20 +45,20 @@ class AnimateStream:
         self._outbox.put(self._session.opened)
         reading = asyncio.create_task(self._read_all())
         writing = asyncio.create_task(self._writer.run())
-        tasks = {reading, writing}
+        watching = asyncio.create_task(self._writer.watch())
+        tasks = {reading, writing, watching}
         if self._settings.pacing is Pacing.SERVER:
             tasks.add(asyncio.create_task(self._pace()))
         try:
-            done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-            for task in done:
-                task.result()
+            await _first_of(tasks)
             self._outbox.finish()
-            await writing
+            await _first_of({writing, watching})
         finally:
-            for task in tasks:
+            others = tasks - {writing}
+            for task in others:
                 task.cancel()
-            await asyncio.gather(*tasks, return_exceptions=True)
-            await self._writer.settle()
+            await asyncio.gather(*others, return_exceptions=True)
+            await self._writer.stop(writing)
 
     async def _read_all(self) -> None:
         while (request := await self._wire.read()) is not None:
@@ -121,3 +121,10 @@ class AnimateStream:
         if found:
             more = error.more + max(0, len(found) - MAX_VIOLATIONS)
             self._outbox.report(replace(error, violations=found[:MAX_VIOLATIONS], more=more))
+
+
+async def _first_of(tasks: set["asyncio.Task[None]"]) -> None:
+    """Wait for the first task that ends; its error, if any, is raised."""
+    done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    for task in done:
+        task.result()

@@ -18,5 +18,5 @@ class Wire(Protocol):
             DecodeError: If the bytes are no message.
         """
 
-    async def write(self, response: pb.AnimateResponse) -> None:
-        """Hand a message to the transport; returns when there is room for the next one."""
+    async def write(self, response: bytes) -> None:
+        """Hand the bytes of an `AnimateResponse` over; returns when there is room for the next."""

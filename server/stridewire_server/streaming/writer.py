@@ -1,4 +1,4 @@
-"""The one task of a stream that writes.
+"""The one task of a stream that writes, and the one that watches it.
 
 A write that has begun is never cancelled, for gRPC would still have it under way. A reader that
 lets one write take too long ends its stream instead.
@@ -6,11 +6,13 @@ lets one write take too long ends its stream instead.
 
 import asyncio
 
-from stridewire._codec.responses import encode_response
+from stridewire._codec.responses import response_bytes
 from stridewire._errors import ExhaustedError
-from stridewire.v1 import animation_pb2 as pb
 from stridewire_server.streaming.outbox import Outbox
 from stridewire_server.streaming.wire import Wire
+
+_LOOKS = 8
+"""So often the watch looks within the longest time that a write may take."""
 
 
 class Writer:
@@ -20,41 +22,50 @@ class Writer:
         self._wire = wire
         self._outbox = outbox
         self._timeout_s = timeout_s
-        self._under_way: asyncio.Future[None] | None = None
+        self._began: float | None = None
+        """When the write under way began."""
+        self._stopped = False
 
     async def run(self) -> None:
-        """Write until the outbox is finished and empty.
+        """Write until the outbox is finished and empty."""
+        now = asyncio.get_running_loop().time
+        while not self._stopped and (message := await self._outbox.take()) is not None:
+            self._began = now()
+            await self._wire.write(response_bytes(message))
+            self._began = None
+
+    async def watch(self) -> None:
+        """Look now and then whether a write takes too long; a timer for each would cost more.
 
         Raises:
-            ExhaustedError: If one write took too long.
+            ExhaustedError: If one does.
         """
-        while (message := await self._outbox.take()) is not None:
-            await self._write(encode_response(message))
+        while not self._takes_too_long():
+            await asyncio.sleep(self._timeout_s / _LOOKS)
+        raise ExhaustedError(
+            f"the reader took nothing for {self._timeout_s:g} s; read frames as they come, "
+            "or give fewer max_frames_in_flight"
+        )
 
-    async def settle(self) -> None:
-        """Wait for the write under way, if any: until it is through, the stream has no status.
+    async def stop(self, running: "asyncio.Task[None]") -> None:
+        """End the task that runs; its write under way, if any, is waited for.
 
         gRPC refuses the status of a stream while its first write is being made. A write that took
         too long already is not waited for again.
         """
-        if self._under_way is not None:
-            await asyncio.wait({self._under_way}, timeout=self._timeout_s)
+        self._stopped = True
+        running.add_done_callback(_forget)
+        if self._began is None:
+            running.cancel()
+        elif not self._takes_too_long():
+            await asyncio.wait({running}, timeout=self._timeout_s)
 
-    async def _write(self, response: pb.AnimateResponse) -> None:
-        writing = asyncio.ensure_future(self._wire.write(response))
-        writing.add_done_callback(_forget)
-        self._under_way = writing
-        done, _ = await asyncio.wait({writing}, timeout=self._timeout_s)
-        self._under_way = None
-        if not done:
-            raise ExhaustedError(
-                f"the reader took nothing for {self._timeout_s:g} s; read frames as they come, "
-                "or give fewer max_frames_in_flight"
-            )
-        await writing
+    def _takes_too_long(self) -> bool:
+        now = asyncio.get_running_loop().time()
+        return self._began is not None and now - self._began > self._timeout_s
 
 
-def _forget(writing: "asyncio.Future[None]") -> None:
+def _forget(running: "asyncio.Task[None]") -> None:
     """Look at the outcome, so that a write nobody waits for any more does not complain."""
-    if not writing.cancelled():
-        writing.exception()
+    if not running.cancelled():
+        running.exception()

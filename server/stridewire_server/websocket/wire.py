@@ -6,7 +6,7 @@ import grpc
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
-from stridewire._codec.responses import encode_response
+from stridewire._codec.responses import response_bytes
 from stridewire._codec.status import MAX_VIOLATIONS
 from stridewire._errors import InvalidRequestError, ProtocolError, StridewireError
 from stridewire._messages import StreamError
@@ -54,9 +54,9 @@ class WebSocketWire:
             )
         return pb.AnimateRequest.FromString(data)
 
-    async def write(self, response: pb.AnimateResponse) -> None:
+    async def write(self, response: bytes) -> None:
         """Send a message; returns when there is room for the next one."""
-        await self._connection.send(response.SerializeToString())
+        await self._connection.send(response)
 
 
 async def refuse(connection: ServerConnection, error: StridewireError) -> None:
@@ -64,7 +64,7 @@ async def refuse(connection: ServerConnection, error: StridewireError) -> None:
     if error.violations:
         listed = error.violations[:MAX_VIOLATIONS]
         told = StreamError(0, listed, len(error.violations) - len(listed))
-        await connection.send(encode_response(told).SerializeToString())
+        await connection.send(response_bytes(told))
     await connection.close(close_code(error.code), _cut(str(error)))
 
 

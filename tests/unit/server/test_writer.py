@@ -19,14 +19,14 @@ class Call:
         self.written: list[str] = []
         self.cancelled = False
 
-    async def write(self, response: pb.AnimateResponse) -> None:
+    async def write(self, response: bytes) -> None:
         """Write, in time."""
         try:
             await self.go.wait()
         except asyncio.CancelledError:
             self.cancelled = True
             raise
-        self.written.append(response.notice.message)
+        self.written.append(pb.AnimateResponse.FromString(response).notice.message)
 
 
 def test_messages_are_written_in_order() -> None:
@@ -44,14 +44,17 @@ def test_messages_are_written_in_order() -> None:
     assert asyncio.run(run()) == ["a", "b", "c"]
 
 
-def test_a_write_that_takes_too_long_ends_the_writer() -> None:
-    """The reader is told why; the write itself is left to finish."""
+def test_a_write_that_takes_too_long_is_told_of() -> None:
+    """The watch says why; the write itself is left to finish."""
 
     async def run() -> Call:
         call, outbox = Call(), Outbox(1)
         outbox.put(Notice(1, "late"))
+        writer = Writer(call, outbox, 0.01)
+        writing = asyncio.create_task(writer.run())
         with pytest.raises(ExhaustedError, match="the reader took nothing"):
-            await Writer(call, outbox, 0.01).run()
+            await writer.watch()
+        await writer.stop(writing)
         call.go.set()
         await asyncio.sleep(0)
         return call
@@ -59,21 +62,36 @@ def test_a_write_that_takes_too_long_ends_the_writer() -> None:
     assert not asyncio.run(run()).cancelled
 
 
-def test_cancelling_the_writer_leaves_its_write_alone() -> None:
-    """A stream that ends in the middle of a write lets it finish first."""
+def test_stopping_leaves_a_write_alone() -> None:
+    """A stream that ends in the middle of a write lets it finish, and writes nothing more."""
 
     async def run() -> Call:
         call, outbox = Call(), Outbox(1)
         outbox.put(Notice(1, "last"))
+        outbox.put(Notice(1, "too late"))
         writer = Writer(call, outbox, 5.0)
         writing = asyncio.create_task(writer.run())
         await asyncio.sleep(0.01)
-        writing.cancel()
-        await asyncio.gather(writing, return_exceptions=True)
+        stopping = asyncio.create_task(writer.stop(writing))
+        await asyncio.sleep(0.01)
         call.go.set()
-        await writer.settle()
+        await stopping
         return call
 
     call = asyncio.run(run())
     assert call.written == ["last"]
     assert not call.cancelled
+
+
+def test_stopping_an_idle_writer_ends_it() -> None:
+    """Where nothing is under way there is nothing to wait for."""
+
+    async def run() -> bool:
+        writer = Writer(Call(), Outbox(1), 5.0)
+        writing = asyncio.create_task(writer.run())
+        await asyncio.sleep(0)
+        await writer.stop(writing)
+        await asyncio.wait({writing})
+        return writing.cancelled()
+
+    assert asyncio.run(run())
