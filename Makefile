@@ -19,6 +19,7 @@ demo: $(VENV)/.server ## drive characters over gRPC for 10 s; LIBRARY=FOLDER dri
 	$(BIN)/stridewire demo $(if $(LIBRARY),--library "$(LIBRARY)")
 
 test: $(VENV)/.dev ## run all tests
+	$(BIN)/python -m stridewire_server.warming
 	$(BIN)/pytest -n 2 --dist worksteal
 
 lint: $(VENV)/.dev ## check style, types, contract and Dockerfile

@@ -50,14 +50,14 @@ class HeldRuntime(Runtime):
         self.go = threading.Event()
 
     def advance(
-        self, due: Sequence[tuple[Session, Step]]
+        self, due: Sequence[tuple[Session, Step | float]], level: int = 0
     ) -> list[tuple[Frame, StreamError | None]]:
         """Advance, later."""
         if len(due[0][0]) == 2:
             self.shared.append(len(due))
             self.inside.set()
             self.go.wait(DEADLINE_S)
-        return super().advance(due)
+        return super().advance(due, level)
 
 
 class LoopThread:

@@ -104,7 +104,7 @@ class Measured:
             **_percentiles(tally.refined_ticks, "tick_refined_", ("p99",)),
             **_percentiles(tally.queries, "query_", ("p50", "p99")),
             "transitions_per_s": _per_character_s(tally, tally.counts["transitions"]),
-            "refined_pct": _refined_pct(tally),
+            "refined_pct": _refined_pct(tally) if load.stitcher == "refine" else 0.0,
             "search_interval_ms": _interval_ms(tally),
             "fallback_pct": _share(tally.counts["FRAME_FLAG_FALLBACK"], tally.characters_frames),
             "degraded_pct": _share(tally.counts["FRAME_FLAG_DEGRADED"], tally.characters_frames),
@@ -183,8 +183,8 @@ def _interval_ms(tally: Tally) -> float:
 
 
 def _refined_pct(tally: Tally) -> float:
-    """Return the share of transitions over which a network guided feet; see `refined_share`."""
-    return _share(tally.counts["refined"], tally.counts["ended"])
+    """Return the share of transitions that a network hides, however soon the next one comes."""
+    return _share(tally.counts["refined"], tally.counts["transitions"])
 
 
 def _share(part: float, whole: float) -> float:

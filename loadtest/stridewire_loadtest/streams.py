@@ -11,7 +11,6 @@ import numpy as np
 from grpc.aio import EOF  # type: ignore[attr-defined]
 
 from stridewire._codec.blocks import write_blocks
-from stridewire.refined_share import REFINED_FRAMES
 from stridewire.scripts import script
 from stridewire.v1 import animation_pb2 as pb
 from stridewire_loadtest.scenarios import FRAME_S, RATE_HZ
@@ -89,7 +88,6 @@ class DrivenStream:
         self._plan = plan
         self._tally = tally
         self._controls = plan.controls()
-        self._jumped: set[int] = set()
         self._sent = np.zeros(plan.steps + 1)
         self._last_frame = 0
         self._applied = 0
@@ -198,18 +196,14 @@ class DrivenStream:
         )
 
     def _take_transitions(self, frame: pb.Frame) -> None:
-        """Count transitions; whether one was refined, the character's next one tells."""
+        """Count transitions, and those that a network hides."""
         counts = self._tally.counts
         for event in frame.events:
             if not event.HasField("transition"):
                 continue
             started = event.transition.reason == pb.TRANSITION_REASON_START
             counts["starts" if started else "transitions"] += 1
-            if event.character in self._jumped:
-                counts["ended"] += 1
-                counts["refined"] += event.transition.refined_frames >= REFINED_FRAMES
-            if not started:
-                self._jumped.add(event.character)
+            counts["refined"] += not started and not event.transition.fallback
 
 
 def _hashes(frame: pb.Frame, characters: int) -> list[bytes]:

@@ -1,11 +1,9 @@
 """The server process: services, health and reflection around one runtime."""
 
 import grpc
-import numpy as np
 from grpc_health.v1 import health, health_pb2, health_pb2_grpc
 from grpc_reflection.v1alpha import reflection
 
-from stridewire._messages import CharacterSpec, Open, Step
 from stridewire.v1 import (
     animation_pb2,
     blend_pb2,
@@ -17,10 +15,9 @@ from stridewire.v1 import (
     stitch_pb2,
     stitch_pb2_grpc,
 )
-from stridewire_engine.networks.blend import blend_network
 from stridewire_engine.runtime import Runtime
-from stridewire_engine.stitchers import STITCHER_NAMES
 from stridewire_server.interceptors import ErrorInterceptor
+from stridewire_server.metrics import Metrics
 from stridewire_server.page.site import Site
 from stridewire_server.services import animation
 from stridewire_server.services.about import ServerService
@@ -31,14 +28,12 @@ from stridewire_server.services.stitch import StitchService
 from stridewire_server.settings import ServerSettings
 from stridewire_server.streaming.sessions import Sessions
 from stridewire_server.ticker import Ticker
+from stridewire_server.warming import warm_up
 from stridewire_server.websocket.animate import ANIMATE, animate, find_layout
 from stridewire_server.websocket.door import Talk, WebSocketDoor
 
 _GRACE_S = 0.5
 """For calls that are still open when the time of open sessions is up."""
-
-_WARM_FRAMES, _TURN_EVERY = 120, 30
-"""So long that every stitcher, the network included, has hidden a transition."""
 
 _READY = (
     animation_pb2.DESCRIPTOR.services_by_name["AnimationService"].full_name,
@@ -63,7 +58,8 @@ class AnimationServer:
         self, runtime: Runtime, settings: ServerSettings, page: Site | None = None
     ) -> None:
         self._settings = settings
-        self._ticker = Ticker(runtime)
+        self._metrics = Metrics()
+        self._ticker = Ticker(runtime, self._metrics)
         self._sessions = Sessions(self._ticker, settings)
         self._stitch = StitchService(runtime)
         self._health = health.aio.HealthServicer()  # type: ignore[attr-defined]
@@ -82,6 +78,8 @@ class AnimationServer:
             )
         self.websocket_address = ""
         """Where the WebSocket door listens, once it does."""
+        self.metrics_address = ""
+        """Where metrics are served, once they are."""
 
     async def start(self) -> str:
         """Listen, warm the libraries up, become healthy; returns the bound address.
@@ -93,9 +91,11 @@ class AnimationServer:
         await self._set_health(health_pb2.HealthCheckResponse.NOT_SERVING)
         address = self._bind()
         await self._server.start()
-        await self._ticker.call(warm_up, self._ticker.runtime)
+        await self._ticker.query(warm_up, self._ticker.runtime)
         if self._door is not None:
             self.websocket_address = await self._door.start()
+        if self._settings.metrics:
+            self.metrics_address = self._metrics.serve(self._settings.metrics)
         await self._set_health(health_pb2.HealthCheckResponse.SERVING)
         return address
 
@@ -109,6 +109,7 @@ class AnimationServer:
         await self._sessions.wait_until_empty(_GRACE_S)
         self._ticker.shut_down()
         self._stitch.shut_down()
+        self._metrics.stop()
 
     async def wait(self) -> None:
         """Wait until the server has stopped."""
@@ -145,23 +146,3 @@ class AnimationServer:
         """Set the health of the server and of what it offers."""
         for name in ("", *_READY):
             await self._health.set(name, status)
-
-
-def warm_up(runtime: Runtime) -> None:
-    """Drive every library for a while, so that no caller pays for pages, caches and compiling.
-
-    Raises:
-        ModelError: If a network that comes with the package is damaged.
-    """
-    blend_network()
-    for name in runtime.libraries:
-        specs = [CharacterSpec(i, stitcher=stitcher) for i, stitcher in enumerate(STITCHER_NAMES)]
-        session = runtime.open(Open(specs, library=name))
-        for number in range(_WARM_FRAMES):
-            way = np.array([0.0, 1.5] if number // _TURN_EVERY % 2 else [1.5, 0.0], np.float32)
-            facing = np.full(len(specs), np.nan, np.float32)
-            step = Step(
-                number, 1 / 60, velocity_xz=np.tile(way, (len(specs), 1)), facing_yaw=facing
-            )
-            runtime.advance([(session, step)])
-        runtime.close(session)

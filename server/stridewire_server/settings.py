@@ -21,6 +21,8 @@ class ServerSettings:
     """Where the WebSocket door listens, `host:port`; empty means nowhere."""
     origins: tuple[str, ...] = ()
     """Origins of pages that may come through that door, beside its own."""
+    metrics: str = ""
+    """Where metrics are served in Prometheus' format, `host:port`; empty means nowhere."""
     max_sessions: int = 256
     """Sessions at the same time, whatever the door; one more is refused with RESOURCE_EXHAUSTED."""
     drain_s: float = 10.0

@@ -38,10 +38,10 @@ class Watched(Runtime):
         self._lock = threading.Lock()
 
     def advance(
-        self, due: Sequence[tuple[Session, Step]]
+        self, due: Sequence[tuple[Session, Step | float]], level: int = 0
     ) -> list[tuple[Frame, StreamError | None]]:
         """Advance, and keep."""
-        advanced = super().advance(due)
+        advanced = super().advance(due, level)
         with self._lock:
             self.made.update({frame.frame: frame for frame, _ in advanced})
         return advanced

@@ -19,12 +19,12 @@ class Faulty(Runtime):
     """Fails for every session that has three characters."""
 
     def advance(
-        self, due: Sequence[tuple[Session, Step]]
+        self, due: Sequence[tuple[Session, Step | float]], level: int = 0
     ) -> list[tuple[Frame, StreamError | None]]:
         """Advance, or fail."""
         if any(len(session) == 3 for session, _ in due):
             raise ZeroDivisionError(SECRET)
-        return super().advance(due)
+        return super().advance(due, level)
 
 
 def test_a_fault_is_internal_and_tells_an_id(

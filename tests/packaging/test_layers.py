@@ -68,6 +68,7 @@ THIRD_PARTY = {
         "grpc_reflection",
         "grpc_status",
         "numpy",
+        "prometheus_client",
         "websockets",
     },
     "stridewire_models": {

@@ -53,6 +53,7 @@ from stridewire._messages import (
 )
 from stridewire.motion.array_types import Floats
 from stridewire.motion.skeleton import REFERENCE
+from stridewire.v1 import animation_pb2 as pb
 
 uint = st.integers(0, 2**32 - 1)
 double = st.floats(allow_nan=False)
@@ -347,4 +348,15 @@ def test_errors_survive_the_wire(
         message,
         tuple(violations),
         retry_after_s,
+    )
+
+
+@given(frames())
+def test_frames_are_the_same_by_hand(message: Frame) -> None:
+    """Bytes written at once hold what the encoder's message holds."""
+    written = pb.AnimateResponse.FromString(responses.response_bytes(message))
+    # as bytes, for NaN equals nothing
+    expected = responses.encode_response(message)
+    assert written.SerializeToString(deterministic=True) == expected.SerializeToString(
+        deterministic=True
     )

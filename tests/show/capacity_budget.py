@@ -11,32 +11,29 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
-from stridewire._codec.responses import encode_response
+from stridewire._codec.responses import response_bytes
 from stridewire._messages import CharacterSpec, Detail, Open, Step
 from stridewire.scripts import script
 from stridewire_engine.library import Library
 from stridewire_engine.runtime import Runtime
 
-_RUNTIME, _STITCHERS = "stridewire_engine.runtime", "stridewire_engine.stitchers"
+_RUNTIME = "stridewire_engine.runtime"
+_PASSES = f"{_RUNTIME}.passes"
 STAGES = {
-    "controls": [(f"{_RUNTIME}.session", "Session.begin_tick")],
-    "intent": [(f"{_RUNTIME}.intent", name) for name in ("set_goals", "predict", "advance")],
-    "query": [(f"{_RUNTIME}.query", "build")],
-    "search": [
-        (f"{_RUNTIME}.choice", "due"),
-        (f"{_RUNTIME}.choice", "choose"),
-        ("stridewire_engine.matching.search", "Matcher.search"),
+    "controls": [
+        (f"{_RUNTIME}.session", "Session.begin_tick"),
+        (f"{_RUNTIME}.runtime", "Runtime._apply_plain"),
     ],
-    "sampling": [
-        (f"{_RUNTIME}.sampling", name) for name in ("sample_pose", "root_delta", "moments")
-    ],
-    "handing over": [(f"{_RUNTIME}.tick", "Tick._jump")],
-    "refine": [(f"{_RUNTIME}.refining", name) for name in ("Refining.plan", "guide", "remember")],
-    "look-ahead": [(f"{_RUNTIME}.tick", "legs_ahead")],
-    "stitching": [(f"{_RUNTIME}.tick", "Tick._stitch")],
-    "legs": [(f"{_STITCHERS}.stance", name) for name in ("leg_pose", "bend", "raise_heels")],
-    "root": [(f"{_RUNTIME}.root", "advance")],
-    "feet": [(f"{_RUNTIME}.feet", "plant")],
+    "look: goals, predictions, who searches": [(_PASSES, "Passes.look")],
+    "ask: queries": [(f"{_RUNTIME}.query", "ask")],
+    "search: the index": [("stridewire_engine.matching.candidates", "CandidateSet.nearest")],
+    "search: ranking and choice": [(f"{_RUNTIME}.choice", "choose")],
+    "handing over at a jump": [(f"{_RUNTIME}.tick", "Tick._jump")],
+    "refine: plans": [(f"{_RUNTIME}.refining", "Refining.plan")],
+    "refine: the network": [("stridewire_engine.networks.onnx_model", "OnnxModel.run")],
+    "play: clips, poses, roots": [(_PASSES, "Passes.play")],
+    "stitch: springs, footing, legs, look-ahead": [(f"{_RUNTIME}.tick", "Tick._stitch")],
+    "plant: locks, memory for the next query": [(_PASSES, "Passes.plant")],
     "output": [(f"{_RUNTIME}.session", "Session.end_tick"), (f"{_RUNTIME}.tick", "Tick._block")],
 }
 _WARM, _FRAMES = 120, 240
@@ -106,7 +103,7 @@ def tick_us(library: Library, characters: int, stitcher: str) -> float:
     spent = 0.0
     for number, advance in enumerate(driven(library, characters, stitcher)):
         begin = time.thread_time()
-        encode_response(advance()).SerializeToString()
+        response_bytes(advance())
         if number >= _WARM:
             spent += time.thread_time() - begin
     return 1e6 * spent / _FRAMES / characters
@@ -115,7 +112,7 @@ def tick_us(library: Library, characters: int, stitcher: str) -> float:
 def budget_us(library: Library, characters: int, stitcher: str) -> dict[str, float]:
     """Return microseconds a character-frame by stage; `rest` belongs to none."""
     clocks = Clocks()
-    encode = clocks.timed("encode", lambda frame: encode_response(frame).SerializeToString())
+    encode = clocks.timed("encode", response_bytes)
     with watched(clocks):
         for number, advance in enumerate(driven(library, characters, stitcher)):
             if number == _WARM:

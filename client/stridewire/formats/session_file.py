@@ -2,7 +2,8 @@
 
 JSON, one object a line, written as it happens: first `{"recording": 1, "open": …, "opened": …}`,
 then `{"control": Step}` for controls taken over, `{"advance": Step}` for time that passed under a
-step's controls, `{"edit": Edit}`, and `{"frame": Frame}`. Messages have the names of
+step's controls (with `"level"` where the runtime gave way to load), `{"edit": Edit}`, and
+`{"frame": Frame}`. Messages have the names of
 `stridewire._messages` in `_`; arrays are base64 of their bytes, so that every bit survives. Frames
 are counted from 1, one for each `advance`; a frame that never reached the recorder is absent.
 """
@@ -52,6 +53,8 @@ class Advance:
     """Time that passed under a step's controls: the recorded decision of client or clock."""
 
     step: Step
+    level: int = 0
+    """By how many levels the runtime gave way to load, which is the clock's decision, too."""
 
 
 Entry = Control | Advance | Edit | Frame
@@ -78,9 +81,9 @@ class SessionWriter:
         """Note controls that are taken over without time passing."""
         self._write(control=step)
 
-    def advance(self, step: Step) -> None:
-        """Note time that passes under a step's controls."""
-        self._write(advance=step)
+    def advance(self, step: Step, level: int = 0) -> None:
+        """Note time that passes under a step's controls, and what gives way to load."""
+        self._write(advance=step, **({"level": level} if level else {}))
 
     def edit(self, edit: Edit) -> None:
         """Note characters that come, go and change."""
@@ -165,8 +168,8 @@ def _entry(path: Path, number: int, line: str) -> Entry:
     match _parse(path, number, line):
         case {"control": Step() as step}:
             return Control(step)
-        case {"advance": Step() as step}:
-            return Advance(step)
+        case {"advance": Step() as step, **more}:
+            return Advance(step, int(more.get("level", 0)))
         case {"edit": Edit() as edit}:
             return edit
         case {"frame": Frame() as frame}:

@@ -67,7 +67,7 @@ class Candidate:
     @classmethod
     def of(cls, data: Mapping[str, float]) -> "Candidate":
         """Return the candidate of such numbers."""
-        changed = {name: data[name] for name in SETTING_RANGES if name in data}
+        changed: dict[str, Any] = {name: data[name] for name in SETTING_RANGES if name in data}
         weights = tuple((name, data[name]) for name in WEIGHT_RANGES if name in data)
         return cls(replace(TickSettings(), **changed), weights)
 

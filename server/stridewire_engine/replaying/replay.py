@@ -56,8 +56,8 @@ def replay(
         match entry:
             case Control(step):
                 runtime.control(session, step)
-            case Advance(step):
-                ((frame, _),) = runtime.advance([(session, step)])
+            case Advance(step, level):
+                ((frame, _),) = runtime.advance([(session, step)], level)
                 yield frame
                 watch()
             case Edit():

@@ -89,18 +89,19 @@ class Crowd:
         self.sets[number] = chosen
         return number
 
-    def step(self, rows: Sequence[Indices], dt: Sequence[Floats]) -> Block:
+    def step(self, rows: Sequence[Indices], dt: Sequence[Floats], level: int = 0) -> Block:
         """Advance the rows of several sessions in one tick.
 
         Args:
             rows: Rows of each session.
             dt: `(N,)` seconds of each session's rows.
+            level: By how many levels to give way to load.
         """
         which = contiguous(np.concatenate(rows))
-        part, passed = self.state.take(which), np.concatenate(dt)
+        part, passed = self._part(which), np.concatenate(dt)
         if self.watch is not None:
             self.watch(part, passed)
-        block = self._step(part, passed)
+        block = self._step(part, passed, level)
         if not isinstance(which, slice):
             self.state.put(which, part)
         return block
@@ -109,14 +110,20 @@ class Crowd:
         """Say what rows would search for and find; see `Tick.consider`."""
         return self._tick.consider(rows, dt, self.sets)
 
-    def _step(self, rows: Characters, dt: Floats) -> Block:
+    def _part(self, which: slice | Indices) -> Characters:
+        """Return rows to step: views where they lie side by side, else lent."""
+        if isinstance(which, slice):
+            return self.state.take(which)
+        return self.state.borrow(which)
+
+    def _step(self, rows: Characters, dt: Floats, level: int) -> Block:
         """Step rows; those that are far away only when it is their turn."""
         if not (rows.rate_divider.any() or rows.owed.any()):
-            return self._tick.step(rows, dt, self.sets)
+            return self._tick.step(rows, dt, self.sets, level)
         stepped = holding.due(rows, dt)
         which = contiguous(np.flatnonzero(stepped))
-        part = rows.take(which)
-        block = self._tick.step(part, part.owed.copy(), self.sets)
+        part = rows.borrow(which)
+        block = self._tick.step(part, part.owed.copy(), self.sets, level)
         part.owed[...] = 0.0
         rows.put(which, part)
         return holding.held(rows, stepped, block)

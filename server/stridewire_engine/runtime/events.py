@@ -52,7 +52,8 @@ class TickEvents(Sequence[Event]):
 
     @cached_property
     def _events(self) -> list[Event]:
-        if self.detail is Detail.NONE or not self.block.eventful[self.rows].any():
+        told = self.block.eventful_before
+        if self.detail is Detail.NONE or told[self.rows.start] == told[self.rows.stop]:
             return []
         return [*self._transitions(), *self._contacts(), *self._tags()]
 

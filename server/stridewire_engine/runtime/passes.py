@@ -81,14 +81,16 @@ class Passes:
         self._turns = _numbers(Turns, settings)
         self._pull = _numbers(Pull, settings)
 
-    def look(self, state: Characters, dt: Floats) -> tuple[Prediction, Indices]:
+    def look(
+        self, state: Characters, dt: Floats, settings: TickSettings
+    ) -> tuple[Prediction, Indices]:
         """Set goals and return where simulated roots will be and who searches why."""
         count, ahead = len(state), len(self._times)
         future = Prediction(np.empty((count, ahead, 2)), np.empty((count, ahead)))
         reason = np.empty(count, np.int8)
         intent.look(
             columns(Wants, state), self._clips, self._spans.first, self._times, self._halflives,
-            self._turns, _REASONS, dt, *future, reason,
+            _numbers(Turns, settings), _REASONS, dt, *future, reason,
         )  # fmt: skip
         return future, reason
 

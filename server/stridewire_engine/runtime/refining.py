@@ -25,8 +25,6 @@ from stridewire_engine.stitchers.footing import decay
 from stridewire_engine.stitchers.legs import LegPose, Legs, leg_pose
 from stridewire_engine.stitchers.stitcher import turn_to_root, turn_to_world
 
-MOST_A_TICK = 64
-"""Transitions that are refined in one tick; a count, so that a replay decides alike."""
 _LOWER = 9
 """The reference's first joints: hips and legs."""
 _HALFLIFE = 0.1
@@ -60,19 +58,20 @@ class Refining:
         self._refiner, self._halflife = refiner, halflife
         self._drafts = Drafts(library, tracks, legs, refiner, halflife)
 
-    def plan(self, state: Characters, which: Indices) -> None:
+    def plan(self, state: Characters, which: Indices, most: int) -> None:
         """Ask about characters that have just jumped; their guides and fallbacks are set.
 
         Args:
             state: All rows of the tick.
             which: `(M,)` those that are stitched by `refine`, set to their new moments.
+            most: So many are asked about at most.
         """
         fallback = np.where(
             state.past_uneven[which], FallbackReason.OTHER_RATE, FallbackReason.TOO_FEW_FRAMES
         )
         known = np.flatnonzero(state.past_frames[which] >= PAST_FRAMES)
-        fallback[known[MOST_A_TICK:]] = FallbackReason.BUSY
-        known = known[:MOST_A_TICK]
+        fallback[known[most:]] = FallbackReason.BUSY
+        known = known[:most]
         if len(known):
             mine = which[known]
             said = self._drafts.ask(state, mine) if compiled.ENABLED else self._ask(state, mine)

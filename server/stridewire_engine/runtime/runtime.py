@@ -176,13 +176,14 @@ class Runtime:
             recording.close()
 
     def advance(
-        self, due: Sequence[tuple[Session, Step | float]]
+        self, due: Sequence[tuple[Session, Step | float]], level: int = 0
     ) -> list[tuple[Frame, StreamError | None]]:
         """Advance sessions by one step each, all of one library in one tick.
 
         Args:
             due: Sessions, each at most once, and their steps; or seconds, to advance under the
                 controls as they are by then.
+            level: By how many levels to give way to load; see `TickSettings.giving_way`.
 
         Returns:
             A frame, and what was wrong with the step, for each session in order.
@@ -190,7 +191,7 @@ class Runtime:
         steps = [(s, s.held_step(step) if isinstance(step, float) else step) for s, step in due]
         for session, step in steps:
             if recording := self._recordings.get(session.id):
-                recording.advance(step)
+                recording.advance(step, level)
         applied = self._apply_plain(steps)
         begun = [
             _Due(session, *session.begin_tick(step, session.id in applied))
@@ -199,7 +200,7 @@ class Runtime:
         frames: dict[str, Frame] = {}
         for crowd in {id(d.session.crowd): d.session.crowd for d in begun}.values():
             mine = [d for d in begun if d.session.crowd is crowd]
-            block = crowd.step([d.session.rows for d in mine], [d.dt for d in mine])
+            block = crowd.step([d.session.rows for d in mine], [d.dt for d in mine], level)
             stops = np.cumsum([len(d.session) for d in mine]).tolist()
             for d, stop in zip(mine, stops, strict=True):
                 rows = slice(stop - len(d.session), stop)
@@ -221,6 +222,11 @@ class Runtime:
             if controls.apply_plain(told, crowd.state, self._limits):
                 applied.update(session.id for session, _ in mine)
         return applied
+
+    @property
+    def characters(self) -> int:
+        """Number of characters in all sessions."""
+        return sum(len(crowd) for crowd in self._crowds.values())
 
     def ask(self, query: Query[AnswerT]) -> AnswerT:
         """Answer a query.
@@ -250,7 +256,7 @@ class Runtime:
             limits=self._limits,
             stitchers=STITCHER_NAMES,
             sessions=len(self._sessions),
-            characters=sum(len(crowd) for crowd in self._crowds.values()),
+            characters=self.characters,
         )
 
     def _answer(self, query: Query[Any]) -> Any:

@@ -135,7 +135,7 @@ class Session:
             rotations=shown.rotations,
             contacts=block.contact_mask[rows],
             foot_targets=shown.foot_targets,
-            flags=self._roster.take_flags() | block.fallback_flags[rows],
+            flags=self._roster.take_flags() | block.flags[rows],
             simulated_root=shown.simulated_root if detail >= Detail.COSTS else None,
             inside=look(crowd, self.rows, self._roster.scales) if detail is Detail.INSIDE else None,
             events=TickEvents(block, rows, ids, self._frame, detail, crowd.matcher, crowd.sets),

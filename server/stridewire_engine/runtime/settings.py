@@ -1,6 +1,9 @@
 """Settings of the tick; the defaults are what ships."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+LEVELS = 3
+"""Of giving way to load: not at all, somewhat, as much as possible."""
 
 
 @dataclass(frozen=True)
@@ -51,3 +54,17 @@ class TickSettings:
     """Spring of a foot that locks or unlocks."""
     unlock_distance: float = 0.2
     """A locked foot is let go when the motion is so many metres away from it."""
+    most_refined: int = 64
+    """Transitions that are refined in one tick; a count, so that a replay decides alike."""
+
+    def giving_way(self, level: int) -> "TickSettings":
+        """Return what holds while the runtime gives way to load.
+
+        Args:
+            level: 0 for not at all; from 1 on nothing is refined, from 2 on searches are half as
+                frequent.
+        """
+        if level == 0:
+            return self
+        longer = 2.0 if level > 1 else 1.0
+        return replace(self, most_refined=0, search_interval=longer * self.search_interval)

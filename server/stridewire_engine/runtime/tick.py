@@ -4,7 +4,7 @@ Intent, search, playback, root, stitch, feet. Arrays in, arrays out; no loop ove
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -34,7 +34,7 @@ from stridewire_engine.runtime.characters import Characters, contiguous
 from stridewire_engine.runtime.choice import Jumps, Sets
 from stridewire_engine.runtime.lookahead import LegTracks, legs_ahead
 from stridewire_engine.runtime.passes import Passes
-from stridewire_engine.runtime.settings import TickSettings
+from stridewire_engine.runtime.settings import LEVELS, TickSettings
 from stridewire_engine.stitchers import (
     AUTO,
     STITCH_COLUMNS,
@@ -88,14 +88,17 @@ class Block:
     """`(N,)` why who asked for `refine` is stitched by `stance`: a `FallbackReason`, or 0."""
     refined_frames: Indices
     """`(N,)` for how many frames a network guided feet after the transition before the last."""
+    level: int = 0
+    """By how many levels the runtime gave way to load."""
 
     @cached_property
-    def eventful(self) -> Flags:
-        """`(N,)` who has something to tell: most have not, in most ticks."""
+    def eventful_before(self) -> list[int]:
+        """For each row, and behind the last, how many before it have something to tell."""
         told = np.any(self.contacts != self.contacts_before, axis=1) | (self.tags_entered > 0)
         if self.jumps is not None:
             told[self.jumps.characters] = True
-        return np.asarray(told)
+        counts: list[int] = np.cumsum(told).tolist()
+        return [0, *counts]
 
     @cached_property
     def contact_mask(self) -> Indices:
@@ -103,9 +106,10 @@ class Block:
         return to_mask(self.contacts)
 
     @cached_property
-    def fallback_flags(self) -> Indices:
-        """`(N,)` the flag of those whom a network does not guide though it should."""
-        return (self.fallback > 0).astype(np.uint32) << np.uint32(FrameFlag.FALLBACK)
+    def flags(self) -> Indices:
+        """`(N,)` flags of those whom a network should guide and does not, and of all under load."""
+        fallen = (self.fallback > 0).astype(np.uint32) << np.uint32(FrameFlag.FALLBACK)
+        return fallen | np.uint32((self.level > 0) << FrameFlag.DEGRADED)
 
 
 class Tick:
@@ -128,6 +132,7 @@ class Tick:
         """
         self._matcher = matcher
         self._settings = settings
+        self._levels = [settings.giving_way(level) for level in range(LEVELS)]
         self._max_speed = max_speed
         self._clock = clock
         self._legs = Legs.of(matcher.library.skeleton)
@@ -147,28 +152,29 @@ class Tick:
                 matcher.library, self._tracks, self._legs, refiner, settings.root_halflife
             )
 
-    def step(self, state: Characters, dt: Floats, sets: Sets) -> Block:
+    def step(self, state: Characters, dt: Floats, sets: Sets, level: int = 0) -> Block:
         """Advance all rows of `state` in place by `dt` `(N,)` seconds and return what is shown.
 
         Args:
             state: N rows.
             dt: `(N,)`.
             sets: The candidate sets that rows name in `filter`.
+            level: By how many levels to give way to load.
         """
         timings = _Timings(self._clock)
-        settings = self._settings
+        settings = self._levels[level]
         fast = compiled.ENABLED and not state.has_path.any()
         goal: Floats | None = None
         if fast:
-            prediction, reason = self._passes.look(state, dt)
+            prediction, reason = self._passes.look(state, dt, settings)
         else:
-            goal, prediction, reason = self._look(state, dt)
+            goal, prediction, reason = self._look(state, dt, settings)
         timings.note("intent")
         jumps = None
         if reason.any():
             jumps = choice.choose(state, self._matcher, sets, prediction, reason, settings)
             if len(jumps.characters):
-                self._jump(state, jumps)
+                self._jump(state, jumps, settings.most_refined)
         timings.note("search")
         played = self._passes.play(state, dt) if goal is None else self._play(state, goal, dt)
         timings.note("playback")
@@ -187,11 +193,14 @@ class Tick:
         if state.has_ground.any():
             self._lay(state, hips, rotations, played.delta, dt)
         timings.note("feet")
-        return self._block(state, played, hips, rotations, jumps, reason > 0, timings)
+        block = self._block(state, played, hips, rotations, jumps, reason > 0, timings)
+        return replace(block, level=level) if level else block
 
-    def _look(self, state: Characters, dt: Floats) -> tuple[Floats, intent.Prediction, Indices]:
+    def _look(
+        self, state: Characters, dt: Floats, settings: TickSettings
+    ) -> tuple[Floats, intent.Prediction, Indices]:
         """Return goals `(N, 2)`, where simulated roots will be, and who searches why."""
-        settings, library = self._settings, self._matcher.library
+        library = self._matcher.library
         state.time += dt
         goal = intent.set_goals(state, self._max_speed)
         prediction = intent.predict(state, goal, self._times, settings)
@@ -281,7 +290,7 @@ class Tick:
         looked = np.where(reason > 0, reason, TransitionReason.BETTER_MATCH)
         return reason, choice.consider(state, self._matcher, sets, prediction, looked, settings)
 
-    def _jump(self, state: Characters, jumps: Jumps) -> None:
+    def _jump(self, state: Characters, jumps: Jumps, most_refined: int) -> None:
         """Hand the jumping characters over to their stitchers and set them to their new moments."""
         who = jumps.characters
         by = state.stitcher[who]
@@ -295,7 +304,7 @@ class Tick:
             rows = state.borrow(who[rest])
             by[rest] = self._hand_over(rows, jumps.take(rest))
             state.put(who[rest], rows)
-        self._begin(state, jumps, by)
+        self._begin(state, jumps, by, most_refined)
 
     def _hand_over(self, rows: Characters, jumps: Jumps) -> Indices:
         """Take what is shown over into offsets from the new moments; return by which stitchers."""
@@ -327,7 +336,7 @@ class Tick:
         rows.recent_time[:, 0] = rows.time
         return by
 
-    def _begin(self, state: Characters, jumps: Jumps, by: Indices) -> None:
+    def _begin(self, state: Characters, jumps: Jumps, by: Indices, most_refined: int) -> None:
         """Begin to hide the transitions by stitchers `(M,)`; the network is asked where wanted."""
         who, begins = jumps.characters, jumps.reason == TransitionReason.START
         if begins.any():
@@ -341,7 +350,7 @@ class Tick:
         state.guide_frames[who] = 0
         state.fallback[who] = np.where(refines, self._unrefined, 0)
         if refines.any() and self._refining is not None:
-            self._refining.plan(state, who[refines])
+            self._refining.plan(state, who[refines], most_refined)
 
     def _stitchers(
         self, rows: Characters, new: sampling.Moments, source: Motion, target: Motion

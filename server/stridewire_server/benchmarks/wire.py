@@ -10,7 +10,7 @@ import grpc
 import numpy as np
 from grpc.aio import EOF  # type: ignore[attr-defined]
 
-from stridewire._codec.responses import encode_response
+from stridewire._codec.responses import response_bytes
 from stridewire._messages import Frame
 from stridewire_server.benchmarks.comparison import Compared, compare
 
@@ -24,7 +24,7 @@ def encode(joints: int, rounds: int, sizes: tuple[int, ...]) -> Iterator[Compare
     for size in sizes:
         frame = _frame(size, joints)
         value, _ = compare(
-            lambda frame=frame: encode_response(frame).SerializeToString(),  # type: ignore[misc]
+            lambda frame=frame: response_bytes(frame),  # type: ignore[misc]
             lambda: None,
             rounds,
         )

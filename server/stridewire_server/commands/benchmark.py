@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from stridewire_engine.library import Library
     from stridewire_server.benchmarks.comparison import Compared
 
-NAMES = ("search", "tick", "stitchers", "blend", "open", "encode")
+NAMES = ("search", "tick", "stitchers", "blend", "open", "encode", "memory")
 _ROUNDS, _QUICK_ROUNDS = 15, 3
 _SIZES, _QUICK_SIZES = (8, 64, 256, 1024), (8, 64)
 _COLUMNS = "{:<20} {:<34} {:>12} {:<22} {:>9}  {}"
@@ -32,7 +32,7 @@ _COLUMNS = "{:<20} {:<34} {:>12} {:<22} {:>9}  {}"
 @click.option("--quick", is_flag=True, help="Few rounds and small crowds.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def benchmark(library: Path | None, only: tuple[str, ...], quick: bool, as_json: bool) -> None:
-    """Measure search, tick, stitchers, blending, opening and encoding in this process.
+    """Measure search, tick, stitchers, blending, opening, encoding and memory in this process.
 
     Values are processor time, so that a busy machine hurts little; what is to be compared between
     machines is the ratio to the reference, which takes turns with what is measured.
@@ -65,7 +65,7 @@ def benchmark(library: Path | None, only: tuple[str, ...], quick: bool, as_json:
 
 def _parts(library: "Library", quick: bool) -> "dict[str, Callable[[], Iterator[Compared]]]":
     """Return what is measured, by name."""
-    from stridewire_server.benchmarks import engine, wire
+    from stridewire_server.benchmarks import engine, memory, wire
 
     rounds, sizes = (_QUICK_ROUNDS, _QUICK_SIZES) if quick else (_ROUNDS, _SIZES)
     return {
@@ -75,6 +75,7 @@ def _parts(library: "Library", quick: bool) -> "dict[str, Callable[[], Iterator[
         "blend": lambda: engine.blend(library, rounds),
         "open": lambda: engine.opening(library, rounds),
         "encode": lambda: wire.encode(len(library.skeleton), rounds, sizes),
+        "memory": lambda: memory.memory(library),
     }
 
 

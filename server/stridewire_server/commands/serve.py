@@ -45,6 +45,12 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
     metavar="http://HOST:PORT",
     help="Let pages of this origin come through the WebSocket door; may be given again.",
 )
+@click.option(
+    "--metrics",
+    default="",
+    metavar="HOST:PORT",
+    help="Serve metrics for Prometheus at http://HOST:PORT/metrics.",
+)
 @click.option("--insecure", is_flag=True, help="Allow an address that other machines can reach.")
 @click.option(
     "--record",
@@ -57,6 +63,7 @@ def serve(
     address: str,
     websocket: str,
     origins: tuple[str, ...],
+    metrics: str,
     insecure: bool,
     record: Path | None,
     as_json: bool,
@@ -65,14 +72,16 @@ def serve(
     calm_threads()
     from stridewire_server.settings import ServerSettings, is_loopback
 
-    for given in filter(None, (address, websocket)):
+    for given in filter(None, (address, websocket, metrics)):
         if not (insecure or is_loopback(given)):
             raise click.UsageError(
                 f"{given} can be reached by other machines and this server asks nobody who they "
                 "are; add --insecure to serve there all the same"
             )
     logging.basicConfig(format="%(asctime)s %(levelname)s %(name)s: %(message)s")
-    settings = ServerSettings(address=address, websocket=websocket, origins=origins)
+    settings = ServerSettings(
+        address=address, websocket=websocket, origins=origins, metrics=metrics
+    )
     asyncio.run(_serve(open_libraries(libraries), settings, record, as_json))
 
 
@@ -116,7 +125,7 @@ async def _serve(
     # what is there by now stays: going through it again and again would only stop every frame
     gc.collect()
     gc.freeze()
-    _announce(bound, server.websocket_address, libraries, as_json)
+    _announce(bound, server, libraries, as_json)
     await wait_for_signal()
     await _stop(server)
 
@@ -134,16 +143,22 @@ def _recorder(folder: Path) -> "Recorder":
     return record
 
 
-def _announce(address: str, websocket: str, libraries: "list[Library]", as_json: bool) -> None:
+def _announce(
+    address: str, server: "AnimationServer", libraries: "list[Library]", as_json: bool
+) -> None:
+    websocket, metrics = server.websocket_address, server.metrics_address
     infos = [library.info() for library in libraries]
     if as_json:
         names = [{"name": info.name, "synthetic": info.synthetic} for info in infos]
-        door = {"websocket": websocket} if websocket else {}
+        doors = {"websocket": websocket, "metrics": metrics}
+        door = {name: where for name, where in doors.items() if where}
         click.echo(json.dumps({"address": address, **door, "libraries": names}))
         return
     click.echo(f"listening on {address}")
     if websocket:
         click.echo(f"listening on ws://{websocket}/v1/animate")
+    if metrics:
+        click.echo(f"metrics at http://{metrics}/metrics")
     for info in infos:
         kind = "synthetic" if info.synthetic else "captured"
         click.echo(f"library {info.name} ({kind}, {info.clips} clips, {info.frames} frames)")

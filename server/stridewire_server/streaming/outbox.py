@@ -6,6 +6,7 @@ always the newest, which tells what its skipped predecessors told.
 
 import asyncio
 from collections import deque
+from collections.abc import Callable
 from dataclasses import replace
 
 from stridewire._errors import Violation
@@ -24,22 +25,25 @@ class Outbox:
 
     Args:
         credits_of_reader: Frames that may be unacknowledged; 0 means that none are acknowledged.
+        dropped: Called for each frame that the reader does not get.
     """
 
-    def __init__(self, credits_of_reader: int) -> None:
+    def __init__(self, credits_of_reader: int, dropped: Callable[[], None] = lambda: None) -> None:
         self._credits = credits_of_reader
+        self._dropped = dropped
         self._waiting: deque[ServerMessage] = deque()
         self._errors: deque[StreamError] = deque()
         self._under_way: deque[int] = deque()
         self._mailbox: Frame | None = None
         self._last_sent = 0
         self._finished = False
-        self._changed = asyncio.Event()
+        self._awaited: asyncio.Future[None] | None = None
+        """Set while the writer waits for something to write."""
 
     def put(self, message: Opened | Notice) -> None:
         """Put a message that comes after what waits already."""
         self._waiting.append(message)
-        self._changed.set()
+        self._wake()
 
     def report(self, error: StreamError) -> None:
         """Put an error; errors overtake frames."""
@@ -49,11 +53,14 @@ class Outbox:
             last = self._errors[-1]
             more = last.more + len(error.violations) + error.more
             self._errors[-1] = replace(last, more=more)
-        self._changed.set()
+        self._wake()
 
     def offer(self, frame: Frame) -> None:
         """Put a frame: to be written where there is a credit, else into the mailbox."""
-        self._mailbox = frame if self._mailbox is None else skip(self._mailbox, frame)
+        if self._mailbox is not None:
+            frame = skip(self._mailbox, frame)
+            self._dropped()
+        self._mailbox = frame
         self._empty_mailbox()
 
     def acknowledge(self, last_frame: int) -> Violation | None:
@@ -81,8 +88,9 @@ class Outbox:
                 return self._sent(self._waiting.popleft())
             if self._finished:
                 return None
-            self._changed.clear()
-            await self._changed.wait()
+            self._awaited = asyncio.get_running_loop().create_future()
+            await self._awaited
+            self._awaited = None
 
     def _empty_mailbox(self) -> None:
         """Let the frame in the mailbox be written, where the reader has room for it."""
@@ -91,7 +99,11 @@ class Outbox:
             self._under_way.append(self._mailbox.frame)
             self._waiting.append(self._mailbox)
             self._mailbox = None
-        self._changed.set()
+        self._wake()
+
+    def _wake(self) -> None:
+        if self._awaited is not None and not self._awaited.done():
+            self._awaited.set_result(None)
 
     def _sent(self, message: ServerMessage) -> ServerMessage:
         if isinstance(message, Frame):

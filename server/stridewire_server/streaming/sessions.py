@@ -25,6 +25,7 @@ class Sessions:
         self._draining = False
         self._empty = asyncio.Event()
         self._empty.set()
+        ticker.strained = self._tell_strain
 
     async def serve(self, wire: Wire) -> None:
         """Serve one stream until it ends.
@@ -56,6 +57,13 @@ class Sessions:
                 )
             )
         await self.wait_until_empty(self._settings.drain_s)
+
+    def _tell_strain(self, strained: bool) -> None:
+        """Tell all streams that the runtime gives way to load, or that it need not any more."""
+        kind = pb.NOTICE_KIND_DEGRADED if strained else pb.NOTICE_KIND_RECOVERED
+        told = "too much to do: less is refined and searched" if strained else "back to normal"
+        for stream in self._streams:
+            stream.notify(Notice(kind, told))
 
     async def wait_until_empty(self, timeout_s: float) -> None:
         """Wait until no session is open, or until the time is up."""

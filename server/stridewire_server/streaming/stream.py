@@ -17,7 +17,7 @@ from stridewire_server.ticker import Advanced, Ticker
 
 
 class AnimateStream:
-    """One open session; reads the next message only when the last one is done with.
+    """One open session; while a step of it waits for a tick, one message more is read at most.
 
     So a client that floods its stream is held back by its transport and not by memory.
     """
@@ -28,7 +28,13 @@ class AnimateStream:
         self._runtime = ticker.runtime
         self._session = session
         self._settings = session.opened.settings
-        self._outbox = Outbox(self._settings.max_frames_in_flight)
+        self._outbox = Outbox(self._settings.max_frames_in_flight, ticker.metrics.dropped)
+        self._free = asyncio.Event()
+        """Whether no step of this stream waits for a tick."""
+        self._free.set()
+        self._overtaken = 0
+        """Steps that get no frame, because a newer one came while they waited."""
+        self._failed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._writer = Writer(wire, self._outbox, session.opened.limits.write_timeout_s)
 
     def notify(self, notice: Notice) -> None:
@@ -46,7 +52,7 @@ class AnimateStream:
         reading = asyncio.create_task(self._read_all())
         writing = asyncio.create_task(self._writer.run())
         watching = asyncio.create_task(self._writer.watch())
-        tasks = {reading, writing, watching}
+        tasks: set[asyncio.Future[None]] = {reading, writing, watching, self._failed}
         if self._settings.pacing is Pacing.SERVER:
             tasks.add(asyncio.create_task(self._pace()))
         try:
@@ -89,13 +95,13 @@ class AnimateStream:
     async def _take_step(self, step: Step, violations: tuple[Violation, ...]) -> None:
         if wrong := self._outbox.acknowledge(step.last_frame):
             violations = (*violations, wrong)
-        error = None
-        if not step.ack_only:
-            if self._settings.pacing is Pacing.CLIENT:
-                self._report(step.step, violations, await self._advance(step))
-                return
+        if step.ack_only:
+            self._report(step.step, violations)
+        elif self._settings.pacing is Pacing.CLIENT:
+            await self._advance(step, step.step, violations)
+        else:
             error = await self._ticker.call(self._runtime.control, self._session, step)
-        self._report(step.step, violations, error)
+            self._report(step.step, violations, error)
 
     async def _pace(self) -> None:
         """Make frames at the session's rate; time that is lost beyond the catch-up is let go."""
@@ -106,11 +112,35 @@ class AnimateStream:
             await asyncio.sleep(schedule.next_due(loop.time()) - loop.time())
             await self._advance(period)
 
-    async def _advance(self, step: Step | float) -> StreamError | None:
-        advanced: Advanced = await self._ticker.advance(self._session, step)
-        frame, error = advanced
-        self._outbox.offer(frame)
-        return error
+    async def _advance(
+        self, step: Step | float, number: int = 0, violations: tuple[Violation, ...] = ()
+    ) -> None:
+        """Have a frame made, after the one before; what comes of it is not waited for."""
+
+        def done(advanced: Advanced | Exception) -> None:
+            self._free.set()
+            if isinstance(advanced, Exception):
+                if not self._failed.done():
+                    self._failed.set_exception(advanced)
+                return
+            frame, error = advanced
+            if self._overtaken:
+                frame = replace(frame, dropped=frame.dropped + self._overtaken)
+                self._overtaken = 0
+            self._outbox.offer(frame)
+            if violations or error is not None:
+                self._report(number, violations, error)
+
+        if not self._free.is_set() and isinstance(step, Step):
+            wrong = self._ticker.overtake(self._session, step)
+            if wrong is not False:
+                self._overtaken += 1
+                self._ticker.metrics.dropped()
+                self._report(number, violations, wrong)
+                return
+        await self._free.wait()
+        self._free.clear()
+        self._ticker.advance(self._session, step, done)
 
     def _report(
         self, step: int, violations: tuple[Violation, ...], error: StreamError | None = None
@@ -123,7 +153,7 @@ class AnimateStream:
             self._outbox.report(replace(error, violations=found[:MAX_VIOLATIONS], more=more))
 
 
-async def _first_of(tasks: set["asyncio.Task[None]"]) -> None:
+async def _first_of(tasks: set["asyncio.Future[None]"]) -> None:
     """Wait for the first task that ends; its error, if any, is raised."""
     done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     for task in done:

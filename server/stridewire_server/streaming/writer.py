@@ -11,7 +11,7 @@ from stridewire._errors import ExhaustedError
 from stridewire_server.streaming.outbox import Outbox
 from stridewire_server.streaming.wire import Wire
 
-_LOOKS = 8
+_LOOKS = 4
 """So often the watch looks within the longest time that a write may take."""
 
 

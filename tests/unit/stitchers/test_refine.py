@@ -24,7 +24,8 @@ from stridewire_engine.networks.onnx_model import ModelError
 from stridewire_engine.networks.rmr import Guidance, Plans, shipped_refiner
 from stridewire_engine.runtime import Runtime
 from stridewire_engine.runtime.characters import GUIDED_FRAMES, PAST_FRAMES
-from stridewire_engine.runtime.refining import MOST_A_TICK, followed
+from stridewire_engine.runtime.refining import followed
+from stridewire_engine.runtime.settings import TickSettings
 
 
 @pytest.fixture(autouse=True)
@@ -138,9 +139,10 @@ def test_who_cannot_be_refined_falls_back(
 def test_a_tick_refines_no_more_than_it_may(small_library: Library) -> None:
     """All jump at once: so many are refined, the others flagged."""
     network = StandIn()
-    frames, _ = walk(small_library, network, count=2 * MOST_A_TICK, seconds=1.0)
-    assert max(len(plans) for plans in network.asked) == MOST_A_TICK
-    assert max(len(frame.flagged(FrameFlag.FALLBACK)) for frame in frames) == MOST_A_TICK
+    most = TickSettings().most_refined
+    frames, _ = walk(small_library, network, count=2 * most, seconds=1.0)
+    assert max(len(plans) for plans in network.asked) == most
+    assert max(len(frame.flagged(FrameFlag.FALLBACK)) for frame in frames) == most
 
 
 def test_a_transition_tells_how_long_the_one_before_was_refined(small_library: Library) -> None:
