@@ -16,6 +16,7 @@ from stridewire_loadtest.tally import Tally
 _TIMEOUT_S = 5.0
 _VISITOR_S = (1.0, 5.0)
 _VISITOR_CHARACTERS = 4
+_SURGE_STAY_S = 0.05
 
 Ask = Callable[[int], Awaitable[Any]]
 
@@ -120,14 +121,14 @@ async def visit(channel: Any, plan: StreamPlan, tally: Tally, vanish: int = 0) -
 
 
 async def surge(channel: Any, plan: StreamPlan, count: int, begin_s: float, tally: Tally) -> None:
-    """Open many streams within one second, in the middle of the measured time."""
+    """Open many streams within one second, in the middle; each takes a few frames and leaves."""
     at = begin_s + plan.warmup_s + 0.4 * plan.seconds
     await asyncio.sleep(at - time.perf_counter())
     visits = []
     for number in range(count):
         await asyncio.sleep(at + number / count - time.perf_counter())
         short = replace(
-            plan, number=10_000 + number, characters=1, seconds=_VISITOR_S[1], warmup_s=0.0
+            plan, number=10_000 + number, characters=1, seconds=_SURGE_STAY_S, warmup_s=0.0
         )
         visits.append(asyncio.create_task(visit(channel, short, tally)))
     await asyncio.gather(*visits)

@@ -11,6 +11,7 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Callable
+from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -39,11 +40,11 @@ def kernel(function: FunctionT) -> FunctionT:
 
 
 def _cache() -> Path:
-    """Return the folder of machine code made from these very files; a fresh one where none lasts.
+    """Return the folder of machine code made of these files by this numba; else a fresh one.
 
     Like the embedded library's, it is below the user's cache folder.
     """
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(version("numba").encode())
     for file in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(file.read_bytes())
     home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
