@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import Literal, ParamSpec, TypeVar
+from typing import Any, Literal, ParamSpec, TypeVar
 
 from stridewire._messages import Frame, Open, Step, StreamError
 from stridewire_engine.runtime import Runtime, Session
@@ -108,10 +108,19 @@ class Ticker:
             return function(*args, **kwargs)
 
     async def query(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        """Call something longer, in a thread; a tick waits for one query at most."""
-        async with self._turn:
-            asked = self._queries.submit(function, *args, **kwargs)
-            return await asyncio.shield(asyncio.wrap_future(asked))
+        """Call something longer, in a thread; a tick waits for one query at most.
+
+        It has its turn until it is done, also where nobody waits for it any more.
+        """
+
+        async def ask() -> T:
+            async with self._turn:
+                asked = self._queries.submit(function, *args, **kwargs)
+                return await asyncio.wrap_future(asked)
+
+        asking = asyncio.create_task(ask())
+        asking.add_done_callback(_look_at)
+        return await asyncio.shield(asking)
 
     def shut_down(self) -> None:
         """End the thread after what was asked of it before."""
@@ -162,3 +171,9 @@ class Ticker:
     def _count(self, more: int) -> None:
         self._sessions += more
         self.metrics.populated(self._sessions, self.runtime.characters)
+
+
+def _look_at(done: "asyncio.Task[Any]") -> None:
+    """Look at an outcome, so that one which nobody waits for any more does not complain."""
+    if not done.cancelled():
+        done.exception()

@@ -104,3 +104,26 @@ def test_a_step_is_overtaken_only_under_load(small_library: Library) -> None:
     assert overtaken is None
     assert frame.applied_step == 2
     assert frame.time_s == pytest.approx(2 * DT)
+
+
+def test_a_query_that_is_given_up_keeps_its_turn(small_library: Library) -> None:
+    """Nothing else is asked of the runtime until the query's thread is through."""
+
+    async def run() -> list[str]:
+        ticker = Ticker(Runtime([small_library], clock=lambda: 0.0), Metrics())
+        released, order = threading.Event(), []
+
+        def query() -> None:
+            released.wait(10.0)
+            order.append("query")
+
+        asking = asyncio.create_task(ticker.query(query))
+        await asyncio.sleep(0.01)
+        asking.cancel()
+        calling = asyncio.create_task(ticker.call(order.append, "call"))
+        await asyncio.sleep(0.01)
+        released.set()
+        await calling
+        return order
+
+    assert asyncio.run(run()) == ["query", "call"]
