@@ -166,9 +166,11 @@ def _calls(library: Library, count: int) -> int:
     specs = tuple(CharacterSpec(i, stitcher=STITCHER) for i in range(count))
     session = runtime.open(Open(characters=specs, detail=Detail.EVENTS))
     step = Step(1, FRAME_S, velocity_xz=np.tile([0.0, 1.4], (count, 1)))
-    for _ in range(60):
-        runtime.advance([(session, step)])
     state = session.crowd.state
+    for number in range(60):
+        # threads that share searches out begin with the first large one
+        state.force_search[:] = number == 30
+        runtime.advance([(session, step)])
     for array in vars(state).values():
         array[:] = array[:1]
     state.until_search[:] = 0.5 * FRAME_S
