@@ -39,6 +39,8 @@ def test_the_core_passes_on_the_oldest_versions(tmp_path: Path) -> None:
     pip = [str(python), "-m", "pip", "install", "-q", "--disable-pip-version-check"]
     subprocess.run([*pip, *floors(project), *TOOLS, "hatchling", "editables"], check=True)
     subprocess.run([*pip, "--no-deps", "--no-build-isolation", "-e", str(ROOT)], check=True)
+    # compiled beforehand, as servers that are tested are not waited for so long
+    subprocess.run([str(python), "-m", "stridewire_server.warming"], check=True)
     tests = [str(ROOT / part) for part in CORE]
     ran = subprocess.run(
         [str(python), "-m", "pytest", "-p", "no:cacheprovider", "-x", *tests],
