@@ -55,6 +55,11 @@ class Ticker:
         self._sessions = 0
         self._began = 0.0
 
+    @property
+    def level(self) -> int:
+        """By how many levels the runtime gives way to load now."""
+        return self._strain.level
+
     async def open(self, message: Open) -> Session:
         """Open a session."""
         session = await self.call(self.runtime.open, message)

@@ -72,15 +72,20 @@ class AnimateStream:
                 case Step() as step, violations:
                     await self._take_step(step, violations)
                 case Edit() as edit, _:
+                    # a step before it still finds the characters that it is for
+                    await self._free.wait()
                     self._report(
                         0, (), await self._ticker.call(self._runtime.edit, self._session, edit)
                     )
                 case Close(), _:
-                    return
+                    break
                 case Open(), _:
                     raise ProtocolError(
                         "a second Open; a stream is one session: open another stream for another"
                     )
+
+        # a step that waits still gets its frame
+        await self._free.wait()
 
     def _decode(self, request: pb.AnimateRequest) -> tuple[object, tuple[Violation, ...]]:
         """Return the message; one that makes no sense loses its controls and is reported."""
@@ -99,6 +104,9 @@ class AnimateStream:
             self._report(step.step, violations)
         elif self._settings.pacing is Pacing.CLIENT:
             await self._advance(step, step.step, violations)
+            if not self._ticker.level:
+                # what comes next may acknowledge the frame; only under load is read on
+                await self._free.wait()
         else:
             error = await self._ticker.call(self._runtime.control, self._session, step)
             self._report(step.step, violations, error)
@@ -118,8 +126,8 @@ class AnimateStream:
         """Have a frame made, after the one before; what comes of it is not waited for."""
 
         def done(advanced: Advanced | Exception) -> None:
-            self._free.set()
             if isinstance(advanced, Exception):
+                self._free.set()
                 if not self._failed.done():
                     self._failed.set_exception(advanced)
                 return
@@ -128,6 +136,7 @@ class AnimateStream:
                 frame = replace(frame, dropped=frame.dropped + self._overtaken)
                 self._overtaken = 0
             self._outbox.offer(frame)
+            self._free.set()
             if violations or error is not None:
                 self._report(number, violations, error)
 
