@@ -5,6 +5,7 @@ import json
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import onnx
 import torch
@@ -13,7 +14,7 @@ from stridewire_engine.evaluation.training_runs import CONFIGURATION
 from stridewire_engine.networks.rmr.features import INPUTS
 from stridewire_engine.networks.rmr.plans import WINDOW
 from stridewire_engine.networks.rmr.refiner import facts
-from stridewire_models.rmr.networks import Steps
+from stridewire_models.rmr.networks import Shape, Steps
 from stridewire_models.rmr.paper_export import paper_to_onnx, read_paper_run
 from stridewire_models.run_folder import BEST
 
@@ -48,7 +49,7 @@ def read_run(folder: Path) -> tuple[Steps, Mapping[str, object]]:
         RunError: If it has none.
     """
     told = _configuration(folder)
-    network = Steps()
+    network = Steps(Shape(**told["shape"]))
     network.load_state_dict(torch.load(folder / BEST))
     network.eval()
     return network, told
@@ -82,12 +83,12 @@ def to_onnx(network: Steps, seed: int) -> bytes:
     return data
 
 
-def _configuration(folder: Path) -> Mapping[str, object]:
+def _configuration(folder: Path) -> Mapping[str, Any]:
     configuration, best = folder / CONFIGURATION, folder / BEST
     if not configuration.is_file() or not best.is_file():
         raise RunError(
             f"{folder} holds no {CONFIGURATION} and {BEST}; give the folder of "
             "`stridewire train rmr --out`"
         )
-    told: Mapping[str, object] = json.loads(configuration.read_text())
+    told: Mapping[str, Any] = json.loads(configuration.read_text())
     return told

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from stridewire_models.rmr.networks import Shape
 from stridewire_models.rmr.paper_networks import Cell
 
 
@@ -35,6 +36,8 @@ class StepsRecipe(Recipe):
 
     live: float
     """Share of live plans."""
+    shape: Shape
+    """Of the network."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,7 @@ class PaperRecipe(Recipe):
     """Weight of the loss of the root's path; the paper's is 1."""
 
 
-STEPS = StepsRecipe("steps", 4_000, 96, 1e-3, 0.02, 0.02, 1e-4, 0.998, 4_000, 400, 40, 0.4)
+STEPS = StepsRecipe("steps", 4_000, 96, 1e-3, 0.02, 0.02, 1e-4, 0.998, 4_000, 400, 40, 0.4, Shape())
 """Within an hour of one thread."""
 # a rate that stays makes networks comparable at any step; one that rises fast stops all learning
 PAPER = PaperRecipe(

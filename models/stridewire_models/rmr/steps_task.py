@@ -18,7 +18,7 @@ class StepsTask:
 
     def __init__(self, recipe: StepsRecipe, train: Takes, validation: Takes, seed: int) -> None:
         """Make the first pairs; weights are of torch's generator."""
-        self.network = Steps()
+        self.network = Steps(recipe.shape)
         self._seed = seed
         self._batch = recipe.batch
         self._supply = Supply(train, recipe.pool, recipe.live, recipe.furthest)
