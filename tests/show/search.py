@@ -236,7 +236,7 @@ def _exact_of(matcher: Matcher, among: CandidateSet) -> CandidateSet:
     """Return the same rows, scanned one by one."""
     features = matcher.library.features
     index = ExactIndex(matcher.schema, features, matcher.bias, among.rows)
-    return CandidateSet(among.text, among.satisfied, among.rows, index, None)
+    return CandidateSet(among.text, among.satisfied, among.rows, index, None, None)
 
 
 def _time(call: Callable[[], object], rounds: int = ROUNDS) -> float:

@@ -7,8 +7,10 @@ import numpy as np
 
 from stridewire._errors import InvalidRequestError, Violation
 from stridewire.motion.array_types import Flags, Floats, Indices
+from stridewire_engine import compiled
 from stridewire_engine.library import Library
 from stridewire_engine.matching import tag_expressions
+from stridewire_engine.matching.boxes import RUN, Boxes
 from stridewire_engine.matching.index import ExactIndex
 from stridewire_engine.matching.inverted_lists import Grouping, InvertedLists, narrow
 from stridewire_engine.matching.schema import Schema
@@ -30,6 +32,7 @@ class CandidateSet:
         rows: Indices,
         index: ExactIndex | InvertedLists,
         selector: "faiss.IDSelector | None",
+        boxes: Boxes | None,
     ) -> None:
         self.text = text
         """The filter's expression; empty for all rows."""
@@ -37,6 +40,8 @@ class CandidateSet:
         """`(F,)`: rows for which the filter holds, startable or not."""
         self.rows = rows
         """Rows that may be chosen, ascending."""
+        self.boxes = boxes
+        """The same, for searches of one row; None where nothing is compiled."""
         self._index = index
         self._selector = selector
 
@@ -91,7 +96,7 @@ class Candidates:
             self.lists = InvertedLists(schema, library.features, bias, rows, grouping, lists.probes)
         everything = np.ones(len(library.features), np.bool_)
         index = self.lists or ExactIndex(schema, library.features, bias, rows)
-        self.everything = CandidateSet("", everything, rows, index, None)
+        self.everything = CandidateSet("", everything, rows, index, None, self._boxes(rows))
 
     def get(self, text: str, path: str) -> CandidateSet:
         """Return the set of a filter; the most recent ones are kept.
@@ -132,17 +137,28 @@ class Candidates:
             satisfied: `(F,)` rows that belong to it, startable or not.
             rows: Those that may be chosen, ascending.
         """
+        boxes = self._boxes(rows)
         if self.lists is None or len(rows) <= EXACT_ROWS:
             features = self._library.features
             exact = ExactIndex(self._schema, features, self._bias, rows)
-            return CandidateSet(text, satisfied, rows, exact, None)
+            return CandidateSet(text, satisfied, rows, exact, None, boxes)
         if len(rows) < _OWN_LISTS_SHARE * len(self.everything):
-            return CandidateSet(text, satisfied, rows, self._own_lists(rows), None)
+            return CandidateSet(text, satisfied, rows, self._own_lists(rows), None, boxes)
         allowed = np.zeros(len(satisfied), np.bool_)
         allowed[rows] = True
         # FAISS keeps a pointer to the bitmap; its Python wrapper keeps the array alive
         selector = faiss.IDSelectorBitmap(np.packbits(allowed, bitorder="little"))
-        return CandidateSet(text, satisfied, rows, self.lists, selector)
+        return CandidateSet(text, satisfied, rows, self.lists, selector, boxes)
+
+    def _boxes(self, rows: Indices) -> Boxes | None:
+        """Put rows into boxes where they are scanned by compiled code."""
+        if not compiled.ENABLED:
+            return None
+        library, stored = self._library, self._library.grouping
+        groups: Indices = np.arange(len(rows)) // RUN
+        if stored is not None:
+            groups = stored.lists[np.searchsorted(np.flatnonzero(library.startable), rows)]
+        return Boxes(self._schema, library.features, self._bias, library.clip_of, rows, groups)
 
     def _own_lists(self, rows: Indices) -> InvertedLists:
         """Index some rows apart: in the common lists, a query would mostly look at others."""

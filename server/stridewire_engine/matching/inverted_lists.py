@@ -6,7 +6,6 @@ so that one grouping serves every weighting. (Letting the inner product assign t
 lose a quarter of the best ones.)
 """
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import faiss
@@ -18,8 +17,6 @@ from stridewire_engine.matching.schema import Schema
 
 _TRAINING_ROWS_A_LIST = 64
 _SEED = 1234
-_MANY_QUERIES = 6
-"""From so many on, half of the queries are looked up by another thread meanwhile."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +87,6 @@ class InvertedLists:
         """
         self.probes = probes
         """Number of lists that a query looks into."""
-        self._other = ThreadPoolExecutor(1, thread_name_prefix="stridewire-search")
         centroids = augment_rows(schema, grouping.centroids, np.zeros(len(grouping.centroids)))
         self._coarse = faiss.IndexFlatIP(centroids.shape[1])
         self._coarse.add(centroids)
@@ -122,13 +118,5 @@ class InvertedLists:
         """
         probes = self._coarse.ntotal if exhaustive else self.probes
         parameters = faiss.SearchParametersIVF(nprobe=probes, sel=selector)
-
-        def look(queries: Floats) -> Indices:
-            one_thread()
-            return np.asarray(self._index.search(queries, k, params=parameters)[1])
-
-        if len(augmented) < _MANY_QUERIES:
-            return look(augmented)
-        half = len(augmented) // 2
-        other = self._other.submit(look, augmented[half:])
-        return np.concatenate([look(augmented[:half]), other.result()])
+        one_thread()
+        return np.asarray(self._index.search(augmented, k, params=parameters)[1])

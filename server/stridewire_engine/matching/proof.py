@@ -1,4 +1,4 @@
-"""Proof: how often the index finds the best row, and what it costs when it does not.
+"""Proof: how often the inverted lists find the best row, and the cost when they do not.
 
 Measured when a library is built, over queries that are not rows of it, under the schema's weights,
 under random ones (a quarter to four times) and with one channel left out; without a filter and for
@@ -143,7 +143,7 @@ def _weightings(
 
 def _measure(matcher: Matcher, trial: _Trial) -> Cell:
     nothing = np.full((len(trial.queries), 1), -1)
-    found = matcher.search(trial.queries, trial.weights, nothing, candidates=trial.among)
+    found = matcher.look_up(trial.queries, trial.weights, nothing, 1, trial.among)
     costs, best = found.costs[:, 0], trial.best_costs
     # an equal cost is as good a find as the very row
     hit = (found.rows[:, 0] == trial.best_rows) | (costs <= best * (1.0 + 1e-9))

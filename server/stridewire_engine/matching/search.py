@@ -7,7 +7,6 @@ import numpy as np
 
 from stridewire.motion.array_types import Flags, Floats, Indices
 from stridewire_engine import compiled
-from stridewire_engine.compiled.ranking import rank
 from stridewire_engine.library import Library, LibraryError
 from stridewire_engine.matching.candidates import Candidates, CandidateSet
 from stridewire_engine.matching.features import Normalisation
@@ -83,8 +82,8 @@ class Matcher:
     ) -> Found:
         """Find the nearest rows outside the neighbourhoods of excluded ones.
 
-        Costs are exact, row by row in float64; ties go to the lowest row. If exclusions hide too
-        many candidates, the index is asked again for more, in the end for all there are.
+        Costs are exact, row by row in float64; ties go to the lowest row. A single row is the best
+        there is, where it is found by bounds; see `look_up` otherwise.
 
         Args:
             queries: `(N, D)` normalised features.
@@ -94,14 +93,32 @@ class Matcher:
             candidates: Rows that may be chosen; None for all.
         """
         among = candidates or self.candidates.everything
+        if k == 1 and compiled.ENABLED and among.boxes is not None:
+            return Found(*among.boxes.best(queries, weights, excluded, NEIGHBOURHOOD_FRAMES))
+        return self.look_up(queries, weights, excluded, k, among)
+
+    def look_up(
+        self, queries: Floats, weights: Floats, excluded: Indices, k: int, among: CandidateSet
+    ) -> Found:
+        """Find the nearest rows among those that the index gives.
+
+        If exclusions hide too many candidates, it is asked again for more, in the end for all.
+
+        Args:
+            queries: As for `search`.
+            weights: As for `search`.
+            excluded: As for `search`.
+            k: Number of rows wanted.
+            among: Rows that may be chosen.
+        """
         ask = k - 1 + _CANDIDATES
-        found = self._search(queries, weights, excluded, k, among, ask)
+        found = self._look_up(queries, weights, excluded, k, among, ask)
         for more, exhaustive in ((4 * ask, False), (16 * ask, True), (len(among), True)):
             lacking = np.flatnonzero(~np.isfinite(found.costs[:, -1]))
             if not len(lacking):
                 break
             rest = queries[lacking], weights[lacking], excluded[lacking]
-            found.put(lacking, self._search(*rest, k, among, more, exhaustive=exhaustive))
+            found.put(lacking, self._look_up(*rest, k, among, more, exhaustive=exhaustive))
         return found
 
     def costs(self, queries: Floats, weights: Floats, rows: Indices) -> Floats:
@@ -117,7 +134,7 @@ class Matcher:
         same = clip_of[rows] == clip_of[np.maximum(others, 0)]
         return np.asarray(close & same & (others >= 0))
 
-    def _search(
+    def _look_up(
         self,
         queries: Floats,
         weights: Floats,
@@ -130,22 +147,10 @@ class Matcher:
     ) -> Found:
         augmented = augment_queries(self.schema, queries, weights)
         rows = among.nearest(augmented, ask, exhaustive=exhaustive)
-        if compiled.ENABLED and k == 1:
-            return self._best(queries, weights, rows, excluded)
         allowed = rows >= 0
         for column in excluded.T:
             allowed &= ~self.near(rows, column[:, None])
         return self._rank(queries, weights, rows, allowed, k)
-
-    def _best(self, queries: Floats, weights: Floats, rows: Indices, excluded: Indices) -> Found:
-        """Return the best of candidates `(N, K)` in a compiled pass."""
-        found = Found.nothing(len(queries), len(self.schema.channels))
-        rank(
-            self.library.features, self.schema.channel_of, self.bias, self.library.clip_of,
-            NEIGHBOURHOOD_FRAMES, queries, weights, rows, excluded, found.rows, found.costs,
-            found.channel_costs,
-        )  # fmt: skip
-        return found
 
     def _rank(
         self, queries: Floats, weights: Floats, rows: Indices, allowed: Flags, k: int

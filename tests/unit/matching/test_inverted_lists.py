@@ -40,7 +40,8 @@ def test_nearly_every_best_row_is_found(grouped: Matcher, rng: np.random.Generat
     """Under random weights 99 of 100 best rows are found, and no cost is wrong."""
     assert not grouped.candidates.everything.is_exact
     asked, by = queries(grouped, rng, 500), weights(rng, 500)
-    found = grouped.search(asked, by, np.full((500, 1), -1))
+    everything = grouped.candidates.everything
+    found = grouped.look_up(asked, by, np.full((500, 1), -1), 1, everything)
     library = grouped.library
     rows = np.flatnonzero(library.startable)
     exact = ExactIndex(LOCOMOTION, library.features, grouped.bias, rows)
