@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -66,12 +67,12 @@ class Manifest:
     build_command: str
     """Command that builds it again."""
 
-    @property
+    @cached_property
     def frames(self) -> int:
         """Number of frames of all clips."""
         return sum(clip.frames for clip in self.clips)
 
-    @property
+    @cached_property
     def content_hash(self) -> str:
         """Hash of everything that a stream depends on."""
         text = json.dumps(

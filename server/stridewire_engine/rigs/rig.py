@@ -7,7 +7,7 @@ between the reference's T-pose and the joint's own axes.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -110,6 +110,7 @@ class Rig:
         return (above + ankle) * _STATURE
 
 
+@lru_cache(maxsize=64)
 def rig_of(skeleton: Skeleton) -> Rig:
     """See a skeleton as a human who stands.
 
