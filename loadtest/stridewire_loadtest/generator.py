@@ -101,10 +101,11 @@ def _generate(share: Share, pipe: Connection) -> None:
 async def _drive(share: Share, pipe: Connection) -> Tally:
     tally = Tally()
     async with grpc.aio.insecure_channel(share.address, CHANNEL_OPTIONS) as channel:
-        streams = [DrivenStream(channel, plan, tally) for plan in share.plans]
+        streams = [DrivenStream(channel, plan, plan.controls(), tally) for plan in share.plans]
         for stream in streams:
             await stream.open()
         asks = await _asks(channel, share)
+        guests = beside.guests_of(share.scenario, share.plans[0]) if share.goes_beside else []
         # what is made from here on dies young: a full collection would only stop the clock
         gc.collect()
         gc.freeze()
@@ -112,7 +113,7 @@ async def _drive(share: Share, pipe: Connection) -> Tally:
         begin = await asyncio.get_running_loop().run_in_executor(None, pipe.recv)
         work: list[Coroutine[Any, Any, None]] = [stream.run(begin) for stream in streams]
         if share.goes_beside:
-            work += _beside(channel, share, asks, begin, tally)
+            work += _beside(channel, share, asks, guests, begin, tally)
         await asyncio.gather(*work)
     return tally
 
@@ -121,21 +122,28 @@ async def _asks(channel: Any, share: Share) -> dict[str, beside.Ask]:
     wanted = share.scenario.blends_per_s or share.scenario.searches_per_s
     if not (share.goes_beside and wanted):
         return {}
-    return await beside.queries(channel, share.plans[0].library)
+    return await beside.queries(channel)
 
 
 def _beside(
-    channel: Any, share: Share, asks: dict[str, beside.Ask], begin: float, tally: Tally
+    channel: Any,
+    share: Share,
+    asks: dict[str, beside.Ask],
+    guests: Sequence[beside.Guest],
+    begin: float,
+    tally: Tally,
 ) -> list[Coroutine[Any, Any, None]]:
     plan, asked = share.plans[0], share.scenario
+    start = begin + plan.warmup_s
     work: list[Coroutine[Any, Any, None]] = []
     for name, per_s in (("blend", asked.blends_per_s), ("search", asked.searches_per_s)):
         if per_s:
-            start = begin + plan.warmup_s
             work.append(beside.flood(asks[name], per_s, start, plan.seconds, tally))
-    for number in range(asked.churn):
-        guest = StreamPlan(**{**plan.__dict__, "number": 1_000 + number})
-        work.append(beside.visitors(channel, guest, begin, tally))
-    if asked.surge:
-        work.append(beside.surge(channel, plan, asked.surge, begin, tally))
+    for guest in guests:
+        if asked.surge:
+            work.append(
+                beside.surge(channel, guest, asked.surge, start + 0.4 * plan.seconds, tally)
+            )
+        else:
+            work.append(beside.visitors(channel, guest, start + plan.seconds, tally))
     return work

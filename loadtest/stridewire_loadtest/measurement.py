@@ -31,7 +31,6 @@ class Load:
     script: str = "random-stick"
     seed: int = 0
     stitcher: str = "auto"
-    library: str = ""
     processes: int = 1
 
     def asked(self) -> Scenario:
@@ -52,7 +51,6 @@ class Load:
                 self.script,
                 self.seed,
                 self.stitcher,
-                self.library,
                 reads=number < asked.streams,
             )
             for number in range(count)
@@ -86,7 +84,7 @@ class Measured:
         cores = self.usage.cores(from_s, to_s)
         row = {
             "scenario": load.scenario,
-            "library": load.library,
+            "library": tally.library,
             "script": load.script,
             "stitch": load.stitcher,
             "characters": asked.streams * asked.characters,

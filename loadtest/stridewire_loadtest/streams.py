@@ -3,6 +3,7 @@
 import asyncio
 import hashlib
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -38,7 +39,6 @@ class StreamPlan:
     script: str
     seed: int
     stitcher: str
-    library: str
     reads: bool = True
 
     @property
@@ -61,7 +61,6 @@ class StreamPlan:
             specs.append(spec)
         return pb.AnimateRequest(
             open=pb.Open(
-                library=self.library,
                 pacing=pb.PACING_CLIENT,
                 characters=specs,
                 detail=pb.DETAIL_EVENTS,
@@ -84,10 +83,21 @@ class StreamPlan:
 class DrivenStream:
     """A stream that is open; `run` drives it to its end."""
 
-    def __init__(self, channel: Any, plan: StreamPlan, tally: Tally) -> None:
+    def __init__(
+        self, channel: Any, plan: StreamPlan, controls: Sequence[bytes], tally: Tally
+    ) -> None:
+        """Begin a stream.
+
+        Args:
+            channel: To the server.
+            plan: What it is to do.
+            controls: Of `plan.controls`, made beforehand since that takes long; at least as many
+                as the plan has steps.
+            tally: Takes what it sees.
+        """
         self._plan = plan
         self._tally = tally
-        self._controls = plan.controls()
+        self._controls = controls
         self._sent = np.zeros(plan.steps + 1)
         self._last_frame = 0
         self._applied = 0
@@ -104,7 +114,9 @@ class DrivenStream:
             grpc.RpcError: If it is refused.
         """
         await self._call.write(self._plan.opening())
-        await self._call.read()
+        answer = await self._call.read()
+        if answer is not EOF:
+            self._tally.library = answer.opened.library.name
 
     async def run(self, begin_s: float) -> None:
         """Drive the stream.

@@ -23,6 +23,8 @@ def histogram() -> Any:
 class Tally:
     """Counts and latencies of the measured time; passes between processes."""
 
+    library: str = ""
+    """What the server says that it plays."""
     expected: int = 0
     """Frames that were to come."""
     received: int = 0
@@ -72,6 +74,7 @@ class Tally:
 
     def add(self, other: "Tally") -> None:
         """Add what another generator has seen."""
+        self.library = self.library or other.library
         for name in (
             "expected",
             "received",

@@ -29,7 +29,7 @@ def run(library: Library, *arguments: str) -> dict[str, object]:
 def test_every_control_of_a_crowd_is_counted(small_library: Library, tmp_path: Path) -> None:
     """Frames received and missing make up what was asked for; distinct poses; a picture."""
     row = run(small_library, "crowd", "--characters", "3", "--out", str(tmp_path))
-    assert (row["streams"], row["characters"]) == (1, 3)
+    assert (row["library"], row["streams"], row["characters"]) == ("small", 1, 3)
     missing = round(float(str(row["dropped_pct"])) / 100.0 * 90)
     assert int(str(row["frames"])) + missing == 90
     assert row["distinct_poses_pct"] == 100.0

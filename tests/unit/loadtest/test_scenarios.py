@@ -4,6 +4,7 @@ import pytest
 
 pytest.importorskip("hdrh")
 
+from stridewire_loadtest.beside import guests_of
 from stridewire_loadtest.measurement import Load
 from stridewire_loadtest.scenarios import FRAME_S, SCENARIO_NAMES
 
@@ -31,3 +32,16 @@ def test_controls_differ_between_streams_and_repeat_with_the_seed() -> None:
     first, second = (plan.controls() for plan in Load("streams", 2, 1.0, 0.0).plans())
     assert first != second
     assert first == Load("streams", 2, 1.0, 0.0).plans()[0].controls()
+
+
+@pytest.mark.parametrize(("name", "guests"), [("soak", 8), ("surge", 1), ("crowd", 0)])
+def test_guests_bring_controls_for_the_longest_stay(name: str, guests: int) -> None:
+    """Nothing is made while the clock runs; a shorter stay uses the same controls."""
+    load = Load(name, 64)
+    found = guests_of(load.asked(), load.plans()[0])
+    assert len(found) == guests
+    for guest in found:
+        assert len(guest.controls) == guest.plan.steps
+        shorter = guest.staying(0.5 * guest.plan.seconds, 77)
+        assert shorter.plan.number == 77
+        assert shorter.plan.steps < len(shorter.controls)
