@@ -12,6 +12,7 @@ import grpc
 import psutil
 from grpc.aio import EOF  # type: ignore[attr-defined]
 
+from stridewire._event_loop import run
 from stridewire_loadtest.scenarios import FRAME_S
 
 _METHOD = "/stridewire.loadtest.Echo/Stream"
@@ -21,9 +22,9 @@ _PAYLOAD = b"\0" * 16
 def echo_cpu_s(streams: int, seconds: float) -> float:
     """Return the server CPU time of one echoed message at 60 a second on each of N streams."""
     with _echo_server() as (address, process):
-        asyncio.run(_drive(address, streams, 1.0))
+        run(_drive(address, streams, 1.0))
         before = process.cpu_times()
-        messages = asyncio.run(_drive(address, streams, seconds))
+        messages = run(_drive(address, streams, seconds))
         after = process.cpu_times()
     return (after.user + after.system - before.user - before.system) / messages
 
@@ -42,7 +43,7 @@ def _echo_server() -> Iterator[tuple[str, psutil.Process]]:
 
 
 def _serve(pipe: Connection) -> None:
-    async def run() -> None:
+    async def serve() -> None:
         server = grpc.aio.server()
         handler = grpc.stream_stream_rpc_method_handler(_echo)
         service, method = _METHOD[1:].split("/")
@@ -53,7 +54,7 @@ def _serve(pipe: Connection) -> None:
         await server.start()
         await server.wait_for_termination()
 
-    asyncio.run(run())
+    run(serve())
 
 
 async def _echo(request: Any, context: Any) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 import grpc
 
 from stridewire._channel import CHANNEL_OPTIONS
+from stridewire._event_loop import run
 from stridewire_loadtest import beside
 from stridewire_loadtest.scenarios import Scenario
 from stridewire_loadtest.streams import DrivenStream, StreamPlan
@@ -93,7 +94,7 @@ def _receive(pipe: Connection, timeout_s: float) -> Any:
 
 def _generate(share: Share, pipe: Connection) -> None:
     try:
-        pipe.send(asyncio.run(_drive(share, pipe)))
+        pipe.send(run(_drive(share, pipe)))
     except Exception as error:
         pipe.send(RuntimeError(f"{type(error).__name__}: {error}"))
 

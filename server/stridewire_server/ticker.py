@@ -50,8 +50,7 @@ class Ticker:
         self._due: dict[str, _Due] = {}
         self._ticking: asyncio.Task[None] | None = None
         self._turn = asyncio.Lock()
-        self._now = asyncio.get_running_loop().time
-        self._strain = Strain(self._now(), time.thread_time())
+        self._strain = Strain(time.monotonic(), time.thread_time())
         self._sessions = 0
         self._began = 0.0
 
@@ -145,7 +144,7 @@ class Ticker:
 
     async def _gather(self) -> None:
         """Wait for more steps, where sessions are many: a tick of a few costs that of dozens."""
-        now = self._now()
+        now = time.monotonic()
         if self._sessions > _FEW_SESSIONS and now < self._began + _GATHER_S:
             await asyncio.sleep(self._began + _GATHER_S - now)
             now = self._began + _GATHER_S
@@ -154,7 +153,7 @@ class Ticker:
     def _advance_all(self, due: list[_Due]) -> None:
         if not due:
             return
-        began, level = self._now(), self._strain.level
+        began, level = time.monotonic(), self._strain.level
         try:
             advanced = self.runtime.advance([(d.session, d.step) for d in due], level)
         except Exception as error:  # a fault of the runtime: it belongs to every stream of the tick
@@ -167,7 +166,7 @@ class Ticker:
 
     def _note(self, began: float, level: int, frame: Frame, frames: int) -> None:
         """Take note of a tick."""
-        ended = self._now()
+        ended = time.monotonic()
         self._strain.note(ended, time.thread_time())
         self.metrics.ticked(ended - began, frames, level, frame.timings_ms)
         if bool(self._strain.level) != bool(level):

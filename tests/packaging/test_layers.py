@@ -48,6 +48,7 @@ THIRD_PARTY = {
         "mpl_toolkits",
         "numpy",
         "pygltflib",
+        "uvloop",
     },
     "stridewire_engine": {
         "click",

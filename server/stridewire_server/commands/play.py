@@ -1,6 +1,5 @@
 """`stridewire play`: a page on which to drive a character, or to look at files."""
 
-import asyncio
 import json
 import logging
 import webbrowser
@@ -9,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from stridewire._event_loop import run
 from stridewire_server.commands.serve import calm_threads, open_libraries, wait_for_signal
 
 DEFAULT_PORT = 8484
@@ -46,7 +46,7 @@ def play(
         raise click.UsageError("give either FILEs to look at or libraries to drive over")
     calm_threads()
     logging.basicConfig(format="%(asctime)s %(levelname)s %(name)s: %(message)s")
-    asyncio.run(_play(files, libraries, port, not no_browser, as_json))
+    run(_play(files, libraries, port, not no_browser, as_json))
 
 
 async def _play(

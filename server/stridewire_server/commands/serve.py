@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from stridewire._event_loop import run
+
 if TYPE_CHECKING:
     from stridewire._messages import Open, Opened
     from stridewire_engine.library import Library
@@ -82,7 +84,7 @@ def serve(
     settings = ServerSettings(
         address=address, websocket=websocket, origins=origins, metrics=metrics
     )
-    asyncio.run(_serve(open_libraries(libraries), settings, record, as_json))
+    run(_serve(open_libraries(libraries), settings, record, as_json))
 
 
 def calm_threads() -> None:

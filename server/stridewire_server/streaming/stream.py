@@ -1,6 +1,7 @@
 """A session on its stream: reading, pacing and writing side by side."""
 
 import asyncio
+import time
 from dataclasses import replace
 
 from stridewire._codec.requests import decode_bare_step, decode_request
@@ -113,11 +114,11 @@ class AnimateStream:
 
     async def _pace(self) -> None:
         """Make frames at the session's rate; time that is lost beyond the catch-up is let go."""
-        loop = asyncio.get_running_loop()
         period = 1.0 / self._settings.rate_hz
-        schedule = Schedule(self._settings.rate_hz, loop.time())
+        schedule = Schedule(self._settings.rate_hz, time.monotonic())
         while True:
-            await asyncio.sleep(schedule.next_due(loop.time()) - loop.time())
+            now = time.monotonic()
+            await asyncio.sleep(schedule.next_due(now) - now)
             await self._advance(period)
 
     async def _advance(

@@ -5,6 +5,7 @@ lets one write take too long ends its stream instead.
 """
 
 import asyncio
+import time
 
 from stridewire._codec.responses import response_bytes
 from stridewire._errors import ExhaustedError
@@ -28,9 +29,8 @@ class Writer:
 
     async def run(self) -> None:
         """Write until the outbox is finished and empty."""
-        now = asyncio.get_running_loop().time
         while not self._stopped and (message := await self._outbox.take()) is not None:
-            self._began = now()
+            self._began = time.monotonic()
             await self._wire.write(response_bytes(message))
             self._began = None
 
@@ -61,8 +61,7 @@ class Writer:
             await asyncio.wait({running}, timeout=self._timeout_s)
 
     def _takes_too_long(self) -> bool:
-        now = asyncio.get_running_loop().time()
-        return self._began is not None and now - self._began > self._timeout_s
+        return self._began is not None and time.monotonic() - self._began > self._timeout_s
 
 
 def _forget(running: "asyncio.Task[None]") -> None:
