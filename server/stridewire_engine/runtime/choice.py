@@ -170,7 +170,7 @@ def consider(
     stay = stay_costs.sum(axis=-1) + matcher.bias[playing]
     bias = settings.continuing_bias * matcher.typical_cost + settings.least_improvement * stay
     bias *= multiples(rows.responsiveness).bias
-    must = np.isin(why, _MUST)
+    must = _MUST[why]
     jump = (found.rows[:, 0] >= 0) & (must | (found.costs[:, 0] + bias < stay))
     return Considered(
         searching, playing, queries, weights, excluded, found, stay_costs, stay, bias, why, jump
@@ -183,7 +183,11 @@ def exclusions(rows: Indices) -> list[Exclusion]:
     return [Exclusion(int(row), text) for row, text in zip(rows, why, strict=True) if row >= 0]
 
 
-_MUST = (TransitionReason.CLIP_END, TransitionReason.START, TransitionReason.FILTER_CHANGE)
+_MUST = np.isin(
+    np.arange(max(TransitionReason) + 1),
+    (TransitionReason.CLIP_END, TransitionReason.START, TransitionReason.FILTER_CHANGE),
+)
+"""By reason, whether the best there is is taken."""
 
 
 def _search(
@@ -196,21 +200,31 @@ def _search(
     playing: Indices,
 ) -> tuple[Found, Flags]:
     """Search once for each distinct filter; also tell whether what is playing satisfies it."""
+    different = set(numbers.tolist())
+    if len(different) == 1:
+        among = sets[different.pop()]
+        found = _search_one(matcher, among, queries, weights, excluded)
+        return found, among.satisfied[playing]
     found = Found.nothing(len(queries), len(matcher.schema.channels))
     satisfied = np.ones(len(queries), np.bool_)
-    for number in np.unique(numbers):
+    for number in sorted(different):
         mine = np.flatnonzero(numbers == number)
-        among = sets[int(number)]
-        part = matcher.search(queries[mine], weights[mine], excluded[mine], 1, among)
-        lacking = np.flatnonzero(part.rows[:, 0] < 0)
-        if len(lacking):
-            # a set smaller than what is excluded: better the same again than nothing
-            whole = np.full((len(lacking), 1), -1)
-            again = mine[lacking]
-            part.put(lacking, matcher.search(queries[again], weights[again], whole, 1, among))
-        found.put(mine, part)
+        among = sets[number]
+        found.put(mine, _search_one(matcher, among, queries[mine], weights[mine], excluded[mine]))
         satisfied[mine] = among.satisfied[playing[mine]]
     return found, satisfied
+
+
+def _search_one(
+    matcher: Matcher, among: CandidateSet, queries: Floats, weights: Floats, excluded: Indices
+) -> Found:
+    found = matcher.search(queries, weights, excluded, 1, among)
+    lacking = np.flatnonzero(found.rows[:, 0] < 0)
+    if len(lacking):
+        # a set smaller than what is excluded: better the same again than nothing
+        whole = np.full((len(lacking), 1), -1)
+        found.put(lacking, matcher.search(queries[lacking], weights[lacking], whole, 1, among))
+    return found
 
 
 def _at_end(state: Characters, matcher: Matcher, dt: Floats, settings: TickSettings) -> Flags:
