@@ -74,7 +74,7 @@ show-refiner: $(VENV)/.dev ## check what stitching claims, as a service and by i
 	$(BIN)/python tests/show/refiner.py $(SHOW)
 
 show-capacity: $(VENV)/.dev ## check how much two cores hold; wants a machine that does nothing else
-	$(BIN)/python tests/show/capacity.py $(SHOW)
+	PYTHONPATH=tests $(BIN)/python tests/show/capacity.py $(SHOW)
 
 show-soak: $(VENV)/.dev ## check twenty minutes near capacity; wants a machine that does nothing else
 	$(BIN)/python tests/show/soak.py $(SHOW)

@@ -19,7 +19,9 @@ from capacity_load import REPORTS, STITCHER, load, standard_library
 from points import ROOT, Point, show
 from search_libraries import MILLION, reduced
 
+from overloading import crowding, neighbour
 from stridewire._messages import CharacterSpec, Detail, Open, Step
+from stridewire.testing import server_process
 from stridewire_engine.library import Library
 from stridewire_engine.runtime import Runtime
 from stridewire_server.benchmarks import engine
@@ -132,6 +134,19 @@ def surge() -> Iterator[Point]:
     yield _late("200 connects in a second: neighbours late", row, 1.0)
 
 
+def overload() -> Iterator[Point]:
+    """Give a server too much, and see how long it takes to be itself again."""
+    path = standard_library().path
+    with server_process(path) as (address, _), neighbour(address) as watching:
+        watching.wait_for(degraded=False)
+        with crowding(address):
+            told_s = watching.wait_for(degraded=True)
+        recovered_s = watching.wait_for(degraded=False)
+    yield Point("too large a crowd: frames beside it say DEGRADED after", f"{told_s:.2f} s")
+    yield Point("the crowd gone: frames are as before after", f"{recovered_s:.2f} s",
+                "within a second", recovered_s <= 1.0)  # fmt: skip
+
+
 def _standard(what: str, row: dict[str, Any]) -> Iterator[Point]:
     """Say whether the load was the standard one."""
     rate, interval, refined = (
@@ -223,6 +238,17 @@ if __name__ == "__main__":
     sys.exit(
         show(
             "capacity",
-            [gates, budget, characters, libraries, crowd, largest, streams, single, surge],
+            [
+                gates,
+                budget,
+                characters,
+                libraries,
+                crowd,
+                largest,
+                streams,
+                single,
+                surge,
+                overload,
+            ],
         )
     )
