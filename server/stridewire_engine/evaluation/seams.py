@@ -10,6 +10,7 @@ import numpy as np
 
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
+from stridewire.motion.root_frame import turn_to_root
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.networks.rmr import Guidance
 from stridewire_engine.networks.rmr.pairs import Pairs
@@ -25,7 +26,6 @@ from stridewire_engine.stitchers import (
     StitchState,
 )
 from stridewire_engine.stitchers.legs import LegPose, Legs, leg_pose
-from stridewire_engine.stitchers.stitcher import turn_to_root
 
 _PLANTED = 0.5
 

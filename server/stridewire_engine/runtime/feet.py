@@ -9,6 +9,7 @@ contact has ended.
 import numpy as np
 
 from stridewire.motion.array_types import Flags, Floats, Quaternions, Vectors
+from stridewire.motion.root_frame import turn_to_root, turn_to_world
 from stridewire.motion.springs import decay_spring_damper_exact
 from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.runtime.settings import TickSettings
@@ -22,7 +23,6 @@ from stridewire_engine.stitchers.legs import (
     raise_heels,
 )
 from stridewire_engine.stitchers.stance import LANDING_WAY
-from stridewire_engine.stitchers.stitcher import turn_to_root, turn_to_world
 
 _WELL_MOVED = 0.02
 """Metres by which a lock moves a toe before its heel rises as softly as it may."""

@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from stridewire.motion.array_types import Floats, Quaternions, Vectors
+from stridewire.motion.root_frame import turn_to_root, turn_to_world
 from stridewire.motion.springs import decay_spring_damper_exact, spring_damper_exact
 from stridewire_engine.runtime.characters import Characters
 from stridewire_engine.stitchers.legs import LegPose, Legs, bend, leg_pose, raise_heels, turn_feet
-from stridewire_engine.stitchers.stitcher import turn_to_root, turn_to_world
 
 _HALFLIFE = 0.08
 """Spring of steps in height and of changes of slope; walking up a slope is neither."""

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stridewire.motion.array_types import Floats, Vectors
+from stridewire.motion.root_frame import turn_to_world
 from stridewire_engine.library import Library
 from stridewire_engine.runtime import sampling
 from stridewire_engine.runtime.characters import Characters
@@ -66,9 +67,7 @@ def legs_ahead(
     motion += state.root_offset[:, None] * faded[:, None] + pull[:, None] * times[:, None]
     # a few metres and radians at most: float32 is exact enough, and half the work
     motion = motion.astype(np.float32)
-    turn = motion[..., 2, None]
-    sine, cosine = np.sin(turn), np.cos(turn)
-    hips, ankles, toes = (_move(_between(track, then), motion, sine, cosine) for track in tracks)
+    hips, ankles, toes = (_move(_between(track, then), motion) for track in tracks)
     contacts = library.contacts[then.nearest][:, 1::2].reshape(-1, count, 2)
     return LegsAhead(times, hips, ankles, toes, contacts)
 
@@ -83,13 +82,8 @@ def _between(track: Vectors, at: sampling.Moments) -> Vectors:
     return np.asarray(a + at.weight[:, None, None] * (b - a))
 
 
-def _move(local: Vectors, motion: Floats, sine: Floats, cosine: Floats) -> Vectors:
-    """Take points `(N, K, 2, 3)` under moved roots into the frame before the move."""
-    local = local.reshape(*motion.shape[:2], 2, 3)
-    x, z = motion[..., 0, None], motion[..., 1, None]
-    px, pz = local[..., 0], local[..., 2]
-    out = np.empty(local.shape, motion.dtype)
-    out[..., 0] = px * cosine + pz * sine + x
-    out[..., 1] = local[..., 1]
-    out[..., 2] = pz * cosine - px * sine + z
+def _move(local: Vectors, motion: Floats) -> Vectors:
+    """Take points `(N K, 2, 3)` under moved roots into the frame before the move."""
+    out = turn_to_world(local, motion[..., 2].reshape(-1)).reshape(*motion.shape[:2], 2, 3)
+    out[..., [0, 2]] += motion[..., None, :2]
     return out

@@ -12,6 +12,7 @@ import numpy as np
 from stridewire._messages import FallbackReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Vectors
+from stridewire.motion.root_frame import turn_to_root, turn_to_world
 from stridewire_engine import compiled
 from stridewire_engine.library import Library
 from stridewire_engine.networks.rmr import Guidance, Plans, Refiner
@@ -23,7 +24,6 @@ from stridewire_engine.runtime.lookahead import LegTracks
 from stridewire_engine.stitchers import Guide, Roots, Sample
 from stridewire_engine.stitchers.footing import decay
 from stridewire_engine.stitchers.legs import LegPose, Legs, leg_pose
-from stridewire_engine.stitchers.stitcher import turn_to_root, turn_to_world
 
 _LOWER = 9
 """The reference's first joints: hips and legs."""

@@ -13,6 +13,7 @@ from stridewire._messages import FallbackReason, FrameFlag, TransitionReason
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire.motion.contacts import to_mask
+from stridewire.motion.root_frame import turn_to_world
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine import compiled
 from stridewire_engine.compiled.jumping import Leaps
@@ -48,7 +49,6 @@ from stridewire_engine.stitchers import (
     stance,
 )
 from stridewire_engine.stitchers.legs import Legs
-from stridewire_engine.stitchers.stitcher import turn_to_world
 
 _AUTO_FRAMES = 24
 """So many frames of the new clip tell which stitcher hides a transition best."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Flags, Floats, Quaternions, Vectors
+from stridewire.motion.root_frame import turn_to_root, turn_to_world
 from stridewire.motion.springs import damper_exact, spring_damper_exact
 from stridewire_engine.stitchers import footing, offsets, replanting
 from stridewire_engine.stitchers.footing import Toes
@@ -27,8 +28,6 @@ from stridewire_engine.stitchers.stitcher import (
     Roots,
     Sample,
     StitchState,
-    turn_to_root,
-    turn_to_world,
 )
 
 _LN2 = float(np.log(2.0))

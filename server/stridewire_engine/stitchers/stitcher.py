@@ -6,6 +6,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
+from stridewire.motion.root_frame import turn_to_root, turn_to_world
 from stridewire_engine.stitchers.columns import Columns, allocate, column
 from stridewire_engine.stitchers.legs import Legs
 
@@ -239,20 +240,3 @@ class Stitcher(Protocol):
 
     def apply(self, state: StitchState, sample: Sample, dt: Floats) -> tuple[Vectors, Quaternions]:
         """Advance by `dt` `(N,)` and return the shown hips `(N, 3)` and rotations `(N, J, 4)`."""
-
-
-def turn_to_world(vectors: Vectors, yaw: Floats) -> Vectors:
-    """Turn vectors `(N, ..., 3)` of the roots' frames by their yaws `(N,)`."""
-    shape = (-1, *(1,) * (vectors.ndim - 2))
-    sine, cosine = np.sin(yaw).reshape(shape), np.cos(yaw).reshape(shape)
-    x, z = vectors[..., 0], vectors[..., 2]
-    out = np.empty(vectors.shape, np.result_type(vectors, yaw))
-    out[..., 0] = x * cosine + z * sine
-    out[..., 1] = vectors[..., 1]
-    out[..., 2] = z * cosine - x * sine
-    return out
-
-
-def turn_to_root(vectors: Vectors, yaw: Floats) -> Vectors:
-    """Turn vectors `(N, ..., 3)` of the world into the frames of roots of yaws `(N,)`."""
-    return turn_to_world(vectors, -yaw)

@@ -6,6 +6,7 @@ import numpy as np
 
 from stridewire.motion import quaternion
 from stridewire.motion.array_types import Floats, Indices, Quaternions, Vectors
+from stridewire.motion.root_frame import turn_to_root
 from stridewire_engine.stitchers import (
     Guide,
     LegsAhead,
@@ -15,7 +16,6 @@ from stridewire_engine.stitchers import (
     Stitcher,
     StitchState,
 )
-from stridewire_engine.stitchers.stitcher import turn_to_root
 from stridewire_engine.stitching.chains import Chains
 from stridewire_engine.stitching.plan import Plan
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from stridewire.motion import quaternion
+from stridewire.motion.root_frame import turn_to_root, turn_to_world
 from stridewire.motion.skeleton import REFERENCE
-from stridewire_engine.networks.rmr.features import turned
 from stridewire_engine.networks.rmr.paper_poses import (
     CONTACTS,
     NUMBERS,
@@ -45,15 +45,15 @@ def test_the_path_comes_back(motion: tuple[np.ndarray, ...]) -> None:
     root, yaw = motion[:2]
     path, turn = root_path(write(*motion)[..., ROOT].astype(np.float64))
     np.testing.assert_allclose(turn - turn[:, :1], yaw - yaw[:, :1], atol=1e-6)
-    back = turned(root - root[:, :1], -yaw[:, 0])
-    ours = turned(path - path[:, :1], -turn[:, 0])
+    back = turn_to_root(root - root[:, :1], yaw[:, 0])
+    ours = turn_to_root(path - path[:, :1], turn[:, 0])
     np.testing.assert_allclose(ours, back, atol=1e-5)
 
 
 def test_numbers_do_not_tell_where_the_world_is(motion: tuple[np.ndarray, ...]) -> None:
     """The same motion elsewhere and turned is written the same; what stands still has no speed."""
     root, yaw, *body = motion
-    moved = turned(root, np.full(3, 1.0)) + np.array([5.0, 0.0, -2.0])
+    moved = turn_to_world(root, np.full(3, 1.0)) + np.array([5.0, 0.0, -2.0])
     np.testing.assert_allclose(write(moved, yaw + 1.0, *body), write(root, yaw, *body), atol=1e-4)
     still = [np.repeat(part[:, :1], 4, axis=1) for part in motion]
     assert not write(*still)[..., VELOCITIES].any()

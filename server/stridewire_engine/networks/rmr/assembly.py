@@ -6,7 +6,7 @@ import numpy as np
 
 from stridewire.motion import kinematics, quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
-from stridewire_engine.networks.rmr.features import turned
+from stridewire.motion.root_frame import turn_to_world
 from stridewire_engine.networks.rmr.pairs import Pairs
 from stridewire_engine.networks.rmr.plans import FRAME_RATE, Plans
 from stridewire_engine.networks.rmr.takes import (
@@ -118,7 +118,7 @@ def placed_before(
     before = np.concatenate([toes[:, :1], toes[:, :-1]], axis=1)
     n, t = np.nonzero(starts)
     local = takes.joints[rows[n, t] - 1][:, TOES].astype(np.float64)
-    before[n, t] = turned(local, yaw[n, t - 1]) + root[n, t - 1, None]
+    before[n, t] = turn_to_world(local, yaw[n, t - 1]) + root[n, t - 1, None]
     return before
 
 
@@ -165,5 +165,5 @@ def _decayed(two: Floats, time: Floats) -> Floats:
 
 def _place(points: Vectors, root: Vectors, yaw: Floats) -> Vectors:
     n, t = yaw.shape
-    flat = turned(points.reshape(n * t, -1, 3), yaw.reshape(-1))
+    flat = turn_to_world(points.reshape(n * t, -1, 3), yaw.reshape(-1))
     return flat.reshape(points.shape) + root[:, :, None]

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stridewire.motion.array_types import Floats, Vectors
+from stridewire.motion.root_frame import turn_to_root, turn_to_world
 from stridewire_engine.networks.rmr.plans import Plans
 
 INPUTS = 43
@@ -36,11 +37,11 @@ class PlanFrame(NamedTuple):
     def enter(self, points: Vectors) -> Vectors:
         """Take points `(N, ..., 3)` of the world into the frames."""
         shape = (-1, *(1,) * (points.ndim - 2), 3)
-        return turned(points - self.origin.reshape(shape), -self.yaw)
+        return turn_to_root(points - self.origin.reshape(shape), self.yaw)
 
     def leave(self, vectors: Vectors) -> Vectors:
         """Turn vectors `(N, ..., 3)` of the frames into the world."""
-        return turned(vectors, self.yaw)
+        return turn_to_world(vectors, self.yaw)
 
 
 def inputs(plans: Plans) -> Floats:
@@ -80,18 +81,6 @@ def steps(points: Vectors) -> Vectors:
     """Return the way since the frame before `(N, T, ...)`; the first frame repeats the second's."""
     way = np.diff(points, axis=1)
     return np.concatenate([way[:, :1], way], axis=1)
-
-
-def turned(vectors: Vectors, yaw: Floats) -> Vectors:
-    """Turn vectors `(N, ..., 3)` about +Y by `(N,)` radians."""
-    shape = (-1, *(1,) * (vectors.ndim - 2))
-    sine, cosine = np.sin(yaw).reshape(shape), np.cos(yaw).reshape(shape)
-    x, z = vectors[..., 0], vectors[..., 2]
-    out = np.empty(vectors.shape, np.result_type(vectors, yaw))
-    out[..., 0] = x * cosine + z * sine
-    out[..., 1] = vectors[..., 1]
-    out[..., 2] = z * cosine - x * sine
-    return out
 
 
 def _flat(feet: Floats) -> Floats:

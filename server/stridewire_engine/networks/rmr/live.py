@@ -8,8 +8,8 @@ import faiss
 import numpy as np
 
 from stridewire.motion.array_types import Flags, Floats, Indices, Vectors
+from stridewire.motion.root_frame import turn_to_root, turn_to_world
 from stridewire_engine.networks.rmr.assembly import Assembled, Legs, placed_before, spring
-from stridewire_engine.networks.rmr.features import turned
 from stridewire_engine.networks.rmr.plans import FRAME_RATE, WINDOW, Plans
 from stridewire_engine.networks.rmr.takes import LOWER, TOES, Takes
 
@@ -99,7 +99,7 @@ class LiveMaker:
             at = HEAD + i
             way, turned_by = self._step(rows[:, at] - 1)
             way = way + (speed - own) * left[i]
-            root[:, at] = root[:, at - 1] + turned(way[:, None], yaw[:, at - 1])[:, 0]
+            root[:, at] = root[:, at - 1] + turn_to_world(way[:, None], yaw[:, at - 1])[:, 0]
             yaw[:, at] = yaw[:, at - 1] + turned_by + (turn - own_turn) * left[i]
         return root, yaw
 
@@ -107,7 +107,7 @@ class LiveMaker:
         """Return the root's way `(N, 3)` in its own frame, and turn `(N,)`, to the next frame."""
         takes = self.takes
         way = takes.root[rows + 1] - takes.root[rows]
-        local = turned(way[:, None], -takes.yaw[rows])[:, 0]
+        local = turn_to_root(way[:, None], takes.yaw[rows])[:, 0]
         return local, takes.yaw[rows + 1] - takes.yaw[rows]
 
     def _other(self, query: Indices, rng: np.random.Generator) -> Indices:

@@ -11,9 +11,10 @@ import numpy as np
 
 from stridewire.motion import kinematics
 from stridewire.motion.array_types import Flags, Floats, Quaternions, Vectors
+from stridewire.motion.root_frame import turn_to_root, turn_to_world
 from stridewire.motion.skeleton import REFERENCE
 from stridewire_engine.networks.blend.features import from_six, to_six
-from stridewire_engine.networks.rmr.features import steps, turned
+from stridewire_engine.networks.rmr.features import steps
 from stridewire_engine.networks.rmr.pairs import Pairs
 from stridewire_engine.networks.rmr.plans import FRAME_RATE
 from stridewire_engine.networks.rmr.takes import LOWER, Takes
@@ -42,7 +43,7 @@ def write(
     """
     n, frames = yaw.shape
     points = kinematics.forward(LOWER, hips, rotations[:, :, :POINTS_COUNT])[0]
-    world = turned(points.reshape(n * frames, -1, 3), yaw.reshape(-1)).reshape(points.shape)
+    world = turn_to_world(points.reshape(n * frames, -1, 3), yaw.reshape(-1)).reshape(points.shape)
     world = world + root[:, :, None]
     six = to_six(rotations.astype(np.float32))
     parts = [
@@ -96,4 +97,4 @@ def _seen_before(ways: Vectors, yaw: Floats) -> Vectors:
     """Turn ways `(N, T, K, 3)` in the world into the frames of the roots a frame earlier."""
     n, frames = yaw.shape
     earlier = yaw - steps(yaw)
-    return turned(ways.reshape(n * frames, -1, 3), -earlier.reshape(-1)).reshape(ways.shape)
+    return turn_to_root(ways.reshape(n * frames, -1, 3), earlier.reshape(-1)).reshape(ways.shape)

@@ -11,7 +11,7 @@ import faiss
 import numpy as np
 
 from stridewire.motion.array_types import Flags, Floats, Indices, Vectors
-from stridewire_engine.networks.rmr.features import turned
+from stridewire.motion.root_frame import turn_to_world
 from stridewire_engine.networks.rmr.takes import Takes
 
 _WEIGHTS = (0.1, 1.0, 1.0)
@@ -73,7 +73,7 @@ class Segments:
         last = rows + self.length - 1
         at = rows[:, None] + np.round(np.linspace(0, self.length - 1, _PATH_FRAMES)).astype(np.intp)
         path, yaw = takes.root_path(at)
-        end = turned(takes.joints[last].astype(np.float64), yaw[:, -1]) + path[:, -1:, :]
+        end = turn_to_world(takes.joints[last].astype(np.float64), yaw[:, -1]) + path[:, -1:, :]
         way = np.stack([path[..., 0], path[..., 2], np.sin(yaw), np.cos(yaw)], axis=-1)
         return [_flat(takes.joints[rows]), _flat(end), _flat(way)]
 

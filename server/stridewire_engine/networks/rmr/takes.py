@@ -9,8 +9,8 @@ from stridewire.motion import kinematics, quaternion
 from stridewire.motion.array_types import Flags, Floats, Indices, Quaternions, Vectors
 from stridewire.motion.clip import Clip
 from stridewire.motion.mirror import mirror_clip
+from stridewire.motion.root_frame import turn_to_root
 from stridewire.motion.skeleton import CONTACT_JOINTS, REFERENCE, Skeleton
-from stridewire_engine.networks.rmr.features import turned
 from stridewire_engine.networks.rmr.plans import FRAME_RATE, WINDOW
 
 _OTHER_GAITS = {
@@ -116,7 +116,7 @@ class Takes:
         """Return roots `(N, T, 3)` and yaws `(N, T)` of rows `(N, T)`, the first at the origin."""
         root, yaw = self.root[rows], self.yaw[rows]
         first = yaw[:, 0]
-        return turned(root - root[:, :1], -first), yaw - first[:, None]
+        return turn_to_root(root - root[:, :1], first), yaw - first[:, None]
 
 
 def _locomotion(clip: Clip) -> Flags:
