@@ -7,10 +7,13 @@ they let other threads run meanwhile. numba's own rule that only a function's ow
 keep stale code, so the cache's folder is named after the contents of all files here.
 """
 
+import atexit
 import hashlib
 import os
+import shutil
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -40,7 +43,7 @@ def kernel(function: FunctionT) -> FunctionT:
 
 
 def _cache() -> Path:
-    """Return the folder of machine code made of these files by this numba; else a fresh one.
+    """Return the folder of machine code made of these files by this numba; a copy if read-only.
 
     Like the embedded library's, it is below the user's cache folder.
     """
@@ -49,11 +52,17 @@ def _cache() -> Path:
         digest.update(file.read_bytes())
     home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     folder = Path(home) / "stridewire" / f"compiled-{digest.hexdigest()[:16]}"
-    try:
+    with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return Path(tempfile.mkdtemp(prefix="stridewire-compiled-"))
-    return folder if os.access(folder, os.W_OK) else Path(tempfile.mkdtemp(prefix="stridewire-"))
+    if os.access(folder, os.W_OK):
+        return folder
+    temporary = tempfile.mkdtemp(prefix="stridewire-")
+    atexit.register(shutil.rmtree, temporary, ignore_errors=True)
+    copy = Path(temporary) / folder.name
+    if folder.is_dir():
+        # numba reads only where it could write
+        shutil.copytree(folder, copy)
+    return copy
 
 
 _CACHE = _cache() if ENABLED else Path()
