@@ -20,6 +20,10 @@ from stridewire_loadtest.tally import GENERATOR_LATE_S, Tally
 ANIMATE = "/stridewire.v1.AnimationService/Animate"
 _SPACING_M = 3.0
 _HASH_EVERY = 60
+_FLAGS = [
+    (1 << flag, pb.FrameFlag.Name(flag))
+    for flag in (pb.FRAME_FLAG_DEGRADED, pb.FRAME_FLAG_FALLBACK)
+]
 _SETTLE_S = 2.0
 """How long frames are waited for after the last control."""
 
@@ -180,42 +184,32 @@ class DrivenStream:
         tally.note(now - begin - (step - 1) * FRAME_S, int((step - plan.warmup) * FRAME_S))
         tally.controls.record_value(max(1, round(1e6 * (now - self._sent[step]))))
         tally.characters_frames += plan.characters
-        elapsed_ms = sum(timing.elapsed_ms for timing in frame.timings)
-        elapsed_us = max(1, round(1e3 * elapsed_ms))
+        elapsed_us = max(1, round(1e3 * sum([timing.elapsed_ms for timing in frame.timings])))
         tally.ticks.record_value(elapsed_us)
-        (tally.refined_ticks if self._refines(frame) else tally.plain_ticks).record_value(
-            elapsed_us
-        )
+        refined = self._take_transitions(frame)
+        (tally.refined_ticks if refined else tally.plain_ticks).record_value(elapsed_us)
         # what dropped frames told, this one tells
         tally.counts["character_ticks"] += plan.characters * (1 + frame.dropped)
         tally.counts["searches"] += frame.searches
-        self._take_transitions(frame)
-        for flag in (pb.FRAME_FLAG_DEGRADED, pb.FRAME_FLAG_FALLBACK):
-            bits = 1 << flag
-            hit = sum(1 for flags in frame.flags if flags & bits)
+        for bits, name in _FLAGS:
+            hit = sum([1 for flags in frame.flags if flags & bits])
             if hit:
-                tally.counts[pb.FrameFlag.Name(flag)] += hit
+                tally.counts[name] += hit
         if step % _HASH_EVERY == 0:
             tally.poses.setdefault(step, []).extend(_hashes(frame, plan.characters))
 
-    def _refines(self, frame: pb.Frame) -> bool:
-        """Tell whether a network was asked about a transition in this tick."""
-        return self._plan.stitcher == "refine" and any(
-            event.HasField("transition")
-            and event.transition.reason != pb.TRANSITION_REASON_START
-            and not event.transition.fallback
-            for event in frame.events
-        )
-
-    def _take_transitions(self, frame: pb.Frame) -> None:
-        """Count transitions, and those that a network hides."""
-        counts = self._tally.counts
+    def _take_transitions(self, frame: pb.Frame) -> bool:
+        """Count transitions; tell whether a network was asked about one of them in this tick."""
+        counts, refined = self._tally.counts, 0
         for event in frame.events:
             if not event.HasField("transition"):
                 continue
-            started = event.transition.reason == pb.TRANSITION_REASON_START
+            transition = event.transition
+            started = transition.reason == pb.TRANSITION_REASON_START
             counts["starts" if started else "transitions"] += 1
-            counts["refined"] += not started and not event.transition.fallback
+            refined += not started and not transition.fallback
+        counts["refined"] += refined
+        return refined > 0 and self._plan.stitcher == "refine"
 
 
 def _hashes(frame: pb.Frame, characters: int) -> list[bytes]:

@@ -70,7 +70,13 @@ def _block(parts: list[bytes], name: str, values: Floats, kind: "np.dtype[Any]" 
     """Append a block: tag, length, and the bytes of the array itself."""
     data = np.asarray(values, kind).tobytes()
     if data:
-        parts += (_TAGS[name], varint(len(data)), data)
+        parts += (_head(name, len(data)), data)
+
+
+@lru_cache(maxsize=256)
+def _head(name: str, size: int) -> bytes:
+    """Return what stands before a block of so many bytes."""
+    return _TAGS[name] + varint(size)
 
 
 @lru_cache(maxsize=4)

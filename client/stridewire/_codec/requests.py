@@ -175,10 +175,14 @@ def _decode_step(wire: pb.Step) -> Step:
         characters=read_integers(wire.characters) if wire.characters else None,
         velocity_xz=read_block(wire, "velocity_xz", -1, 2) if wire.velocity_xz else None,
         facing_yaw=read_block(wire, "facing_yaw") if wire.facing_yaw else None,
-        sparse=tuple(
-            _decode_sparse(sparse, f"step.sparse[{i}]") for i, sparse in enumerate(wire.sparse)
-        ),
+        sparse=_decode_sparses(wire) if wire.sparse else (),
         ack_only=wire.ack_only,
+    )
+
+
+def _decode_sparses(wire: pb.Step) -> tuple[Sparse, ...]:
+    return tuple(
+        _decode_sparse(sparse, f"step.sparse[{i}]") for i, sparse in enumerate(wire.sparse)
     )
 
 

@@ -17,6 +17,7 @@ from stridewire.motion.skeleton import Skeleton
 from stridewire_engine.rigs.planting import Planting
 from stridewire_engine.rigs.posing import Posing
 from stridewire_engine.rigs.rig import Rig, RigError, rig_of
+from stridewire_engine.runtime.roster import Roster
 from stridewire_engine.runtime.tick import Block
 
 
@@ -65,14 +66,13 @@ class Output:
         sent = float(np.float32(height_m))
         return self._scale * (sent / self._height if sent else 1.0)
 
-    def show(self, block: Block, rows: slice, ids: Indices, scales: Floats, dt: float) -> Shown:
+    def show(self, block: Block, rows: slice, roster: Roster, dt: float) -> Shown:
         """Return what a frame shows.
 
         Args:
             block: Of the tick.
             rows: The session's.
-            ids: `(N,)` of the characters in those rows.
-            scales: `(N,)` sizes of the characters in the reference's.
+            roster: The characters in those rows.
             dt: Seconds since the frame before.
         """
         shown = Shown(
@@ -84,9 +84,9 @@ class Output:
             block.simulated_root[rows],
         )
         if self._posing is not None:
-            shown = self._posed(self._posing, shown, block.contacts[rows], ids, scales, dt)
-        elif np.any(scales != 1.0):
-            shown = _sized(shown, scales, scales)
+            shown = self._posed(self._posing, shown, block.contacts[rows], roster, dt)
+        elif not roster.of_one_size:
+            shown = _sized(shown, roster.scales, roster.scales)
         return _as_halves(shown) if self._halves else shown
 
     def _posed(
@@ -94,12 +94,11 @@ class Output:
         posing: Posing,
         shown: Shown,
         contacts: Flags,
-        ids: Indices,
-        scales: Floats,
+        roster: Roster,
         dt: float,
     ) -> Shown:
-        planting = self._rows(ids)
-        passed = np.full(len(ids), dt)
+        planting, scales = self._rows(roster.ids), roster.scales
+        passed = np.full(len(roster), dt)
         posed = posing.pose(
             shown.hips,
             shown.rotations,

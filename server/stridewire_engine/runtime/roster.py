@@ -16,6 +16,8 @@ class Roster:
         """`(N,)` rows of the crowd."""
         self.scales: Floats = np.zeros(0)
         """`(N,)` sizes in the reference skeleton's."""
+        self.of_one_size = True
+        """Whether all are of the reference skeleton's."""
         self._flags: Indices = np.zeros(0, np.uint32)
 
     def __len__(self) -> int:
@@ -25,15 +27,18 @@ class Roster:
         """Add characters at the end."""
         self.ids = np.concatenate([self.ids, ids.astype(np.uint32)])
         self.rows = np.concatenate([self.rows, rows])
-        self.scales = np.concatenate([self.scales, scales])
+        self._size(np.concatenate([self.scales, scales]))
         self._flags = np.concatenate([self._flags, np.zeros(len(ids), np.uint32)])
 
     def remove(self, place: int) -> None:
         """Take a character out."""
         self.ids = np.delete(self.ids, place)
         self.rows = np.delete(self.rows, place)
-        self.scales = np.delete(self.scales, place)
+        self._size(np.delete(self.scales, place))
         self._flags = np.delete(self._flags, place)
+
+    def _size(self, scales: Floats) -> None:
+        self.scales, self.of_one_size = scales, bool(np.all(scales == 1.0))
 
     def places(self, ids: Indices) -> Indices:
         """Return the place `(M,)` of each id `(M,)`, -1 for an unknown one."""

@@ -121,8 +121,8 @@ class Session:
         """Make the frame out of the session's rows of the tick's block."""
         self._frame += 1
         detail = self.opened.settings.detail
-        ids, crowd = self._roster.ids, self.crowd
-        shown = self._output.show(block, rows, ids, self._roster.scales, self._dt)
+        ids, crowd, searched = self._roster.ids, self.crowd, block.searched_before
+        shown = self._output.show(block, rows, self._roster, self._dt)
         return Frame(
             frame=self._frame,
             applied_step=self._applied.step,
@@ -139,7 +139,7 @@ class Session:
             simulated_root=shown.simulated_root if detail >= Detail.COSTS else None,
             inside=look(crowd, self.rows, self._roster.scales) if detail is Detail.INSIDE else None,
             events=TickEvents(block, rows, ids, self._frame, detail, crowd.matcher, crowd.sets),
-            searches=int(np.count_nonzero(block.searched[rows])),
+            searches=searched[rows.stop] - searched[rows.start],
             timings_ms=block.timings_ms,
             format=self.opened.settings.format,
         )

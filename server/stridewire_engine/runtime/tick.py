@@ -97,8 +97,12 @@ class Block:
         told = np.any(self.contacts != self.contacts_before, axis=1) | (self.tags_entered > 0)
         if self.jumps is not None:
             told[self.jumps.characters] = True
-        counts: list[int] = np.cumsum(told).tolist()
-        return [0, *counts]
+        return _before(told)
+
+    @cached_property
+    def searched_before(self) -> list[int]:
+        """For each row, and behind the last, how many before it searched."""
+        return _before(self.searched)
 
     @cached_property
     def contact_mask(self) -> Indices:
@@ -110,6 +114,11 @@ class Block:
         """`(N,)` flags of those whom a network should guide and does not, and of all under load."""
         fallen = (self.fallback > 0).astype(np.uint32) << np.uint32(FrameFlag.FALLBACK)
         return fallen | np.uint32((self.level > 0) << FrameFlag.DEGRADED)
+
+
+def _before(held: Flags) -> list[int]:
+    counts: list[int] = np.cumsum(held).tolist()
+    return [0, *counts]
 
 
 class Tick:
@@ -379,14 +388,15 @@ class Tick:
     ) -> tuple[Vectors, Quaternions]:
         """Let each stitcher turn its characters' sampled poses into the shown ones."""
         state.stitch_time += dt.astype(np.float32)
-        offsets = _stitch_state(state)
         hips, rotations = sample.hips, sample.rotations
         passed = np.maximum(dt, 1e-6)[:, None]
         pull = (delta[:, [0, 2, 3]] - motion) / passed - state.root_offset
-        small_dt = dt.astype(np.float32)
         done = np.zeros(len(state), np.bool_)
         if compiled.ENABLED:
             done = self._passes.stitch(state, sample, pull, dt)
+            if done.all():
+                return hips, rotations
+        small_dt, offsets = dt.astype(np.float32), _stitch_state(state)
         for index, stitcher in enumerate(STITCHERS):
             mine = contiguous(np.flatnonzero((state.stitched_by == index) & ~done))
             if not isinstance(mine, slice) and not len(mine):

@@ -30,12 +30,13 @@ class AnimateStream:
         self._session = session
         self._settings = session.opened.settings
         self._outbox = Outbox(self._settings.max_frames_in_flight, ticker.metrics.dropped)
-        self._free = asyncio.Event()
-        """Whether no step of this stream waits for a tick."""
-        self._free.set()
+        self._loop = asyncio.get_running_loop()
+        self._made = self._loop.create_future()
+        """Done when no step of this stream waits for a tick any more."""
+        self._made.set_result(None)
         self._overtaken = 0
         """Steps that get no frame, because a newer one came while they waited."""
-        self._failed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._failed: asyncio.Future[None] = self._loop.create_future()
         self._writer = Writer(wire, self._outbox, session.opened.limits.write_timeout_s)
 
     def notify(self, notice: Notice) -> None:
@@ -74,7 +75,7 @@ class AnimateStream:
                     await self._take_step(step, violations)
                 case Edit() as edit, _:
                     # a step before it still finds the characters that it is for
-                    await self._free.wait()
+                    await self._made
                     self._report(
                         0, (), await self._ticker.call(self._runtime.edit, self._session, edit)
                     )
@@ -86,7 +87,7 @@ class AnimateStream:
                     )
 
         # a step that waits still gets its frame
-        await self._free.wait()
+        await self._made
 
     def _decode(self, request: pb.AnimateRequest) -> tuple[object, tuple[Violation, ...]]:
         """Return the message; one that makes no sense loses its controls and is reported."""
@@ -107,7 +108,7 @@ class AnimateStream:
             await self._advance(step, step.step, violations)
             if not self._ticker.level:
                 # what comes next may acknowledge the frame; only under load is read on
-                await self._free.wait()
+                await self._made
         else:
             error = await self._ticker.call(self._runtime.control, self._session, step)
             self._report(step.step, violations, error)
@@ -128,7 +129,7 @@ class AnimateStream:
 
         def done(advanced: Advanced | Exception) -> None:
             if isinstance(advanced, Exception):
-                self._free.set()
+                _end(self._made)
                 if not self._failed.done():
                     self._failed.set_exception(advanced)
                 return
@@ -137,19 +138,19 @@ class AnimateStream:
                 frame = replace(frame, dropped=frame.dropped + self._overtaken)
                 self._overtaken = 0
             self._outbox.offer(frame)
-            self._free.set()
+            _end(self._made)
             if violations or error is not None:
                 self._report(number, violations, error)
 
-        if not self._free.is_set() and isinstance(step, Step):
+        if not self._made.done() and isinstance(step, Step):
             wrong = self._ticker.overtake(self._session, step)
             if wrong is not False:
                 self._overtaken += 1
                 self._ticker.metrics.dropped()
                 self._report(number, violations, wrong)
                 return
-        await self._free.wait()
-        self._free.clear()
+        await self._made
+        self._made = self._loop.create_future()
         self._ticker.advance(self._session, step, done)
 
     def _report(
@@ -161,6 +162,12 @@ class AnimateStream:
         if found:
             more = error.more + max(0, len(found) - MAX_VIOLATIONS)
             self._outbox.report(replace(error, violations=found[:MAX_VIOLATIONS], more=more))
+
+
+def _end(waited_for: "asyncio.Future[None]") -> None:
+    """Wake those who wait; a stream that is being ended has given up."""
+    if not waited_for.done():
+        waited_for.set_result(None)
 
 
 async def _first_of(tasks: set["asyncio.Future[None]"]) -> None:
