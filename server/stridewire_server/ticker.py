@@ -22,7 +22,7 @@ T = TypeVar("T")
 Advanced = tuple[Frame, StreamError | None]
 
 _FEW_SESSIONS = 4
-_GATHER_S = 1 / 120
+_GATHER_S = 1 / 160
 """Ticks of more sessions than that begin at least so long after each other."""
 
 
