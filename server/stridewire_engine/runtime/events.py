@@ -5,8 +5,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import overload
 
-import numpy as np
-
 from stridewire._messages import (
     ClipEnd,
     ContactChange,
@@ -52,8 +50,7 @@ class TickEvents(Sequence[Event]):
 
     @cached_property
     def _events(self) -> list[Event]:
-        told = self.block.eventful_before
-        if self.detail is Detail.NONE or told[self.rows.start] == told[self.rows.stop]:
+        if self.detail is Detail.NONE:
             return []
         return [*self._transitions(), *self._contacts(), *self._tags()]
 
@@ -61,11 +58,10 @@ class TickEvents(Sequence[Event]):
         jumps = self.block.jumps
         if jumps is None:
             return
-        inside = (jumps.characters >= self.rows.start) & (jumps.characters < self.rows.stop)
+        jumped, clips = self.block.jumped, self.matcher.library.clips
         costs = self.detail >= Detail.COSTS
-        for i in np.flatnonzero(inside):
-            character = int(self.characters[jumps.characters[i] - self.rows.start])
-            clips = self.matcher.library.clips
+        for i in jumped.within(self.rows):
+            character = self._id(jumped.rows[i])
             from_clip = "" if jumps.from_clip[i] < 0 else clips[jumps.from_clip[i]].name
             reason = TransitionReason(int(jumps.reason[i]))
             if reason is TransitionReason.CLIP_END:
@@ -82,7 +78,7 @@ class TickEvents(Sequence[Event]):
                 fallback=FallbackReason(fallback) if fallback else None,
                 refined_frames=int(self.block.refined_frames[jumps.characters[i]]),
             )
-            yield self._with_costs(transition, jumps, int(i)) if costs else transition
+            yield self._with_costs(transition, jumps, i) if costs else transition
 
     def _with_costs(self, transition: Transition, jumps: Jumps, i: int) -> Transition:
         """Add what the choice cost, what else fitted and what was excluded."""
@@ -108,15 +104,19 @@ class TickEvents(Sequence[Event]):
         )
 
     def _contacts(self) -> Iterator[Event]:
-        now, before = self.block.contacts[self.rows], self.block.contacts_before[self.rows]
-        for row, joint in np.argwhere(now != before):
-            yield ContactChange(
-                int(self.characters[row]), self.frame, int(joint), bool(now[row, joint])
-            )
+        changed, contacts = self.block.contacts_changed, self.block.contacts
+        for i in changed.within(self.rows):
+            row, joint = changed.rows[i], changed.what[i]
+            yield ContactChange(self._id(row), self.frame, joint, bool(contacts[row, joint]))
 
     def _tags(self) -> Iterator[Event]:
-        entered = self.block.tags_entered[self.rows]
-        for row in np.flatnonzero(entered):
+        begun, entered = self.block.tags_begun, self.block.tags_entered
+        for i in begun.within(self.rows):
+            row = begun.rows[i]
             for bit, name in enumerate(self.matcher.library.tag_names):
                 if int(entered[row]) >> bit & 1:
-                    yield TagEntered(int(self.characters[row]), self.frame, name)
+                    yield TagEntered(self._id(row), self.frame, name)
+
+    def _id(self, row: int) -> int:
+        """Return the id of the character in a row of the block."""
+        return int(self.characters[row - self.rows.start])

@@ -121,7 +121,7 @@ class Session:
         """Make the frame out of the session's rows of the tick's block."""
         self._frame += 1
         detail = self.opened.settings.detail
-        ids, crowd, searched = self._roster.ids, self.crowd, block.searched_before
+        ids, crowd = self._roster.ids, self.crowd
         shown = self._output.show(block, rows, self._roster, self._dt)
         return Frame(
             frame=self._frame,
@@ -139,7 +139,7 @@ class Session:
             simulated_root=shown.simulated_root if detail >= Detail.COSTS else None,
             inside=look(crowd, self.rows, self._roster.scales) if detail is Detail.INSIDE else None,
             events=TickEvents(block, rows, ids, self._frame, detail, crowd.matcher, crowd.sets),
-            searches=searched[rows.stop] - searched[rows.start],
+            searches=len(block.searches.within(rows)),
             timings_ms=block.timings_ms,
             format=self.opened.settings.format,
         )

@@ -3,9 +3,11 @@
 Intent, search, playback, root, stitch, feet. Arrays in, arrays out; no loop over characters.
 """
 
-from collections.abc import Callable
+from bisect import bisect_left
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -92,17 +94,25 @@ class Block:
     """By how many levels the runtime gave way to load."""
 
     @cached_property
-    def eventful_before(self) -> list[int]:
-        """For each row, and behind the last, how many before it have something to tell."""
-        told = np.any(self.contacts != self.contacts_before, axis=1) | (self.tags_entered > 0)
-        if self.jumps is not None:
-            told[self.jumps.characters] = True
-        return _before(told)
+    def jumped(self) -> "Happened":
+        """Who jumped, in the order of `jumps`."""
+        return Happened([] if self.jumps is None else self.jumps.characters.tolist())
 
     @cached_property
-    def searched_before(self) -> list[int]:
-        """For each row, and behind the last, how many before it searched."""
-        return _before(self.searched)
+    def contacts_changed(self) -> "Happened":
+        """Whose contacts changed, and of which joint."""
+        rows, joints = np.nonzero(self.contacts != self.contacts_before)
+        return Happened(rows.tolist(), joints.tolist())
+
+    @cached_property
+    def tags_begun(self) -> "Happened":
+        """Who entered tagged spans."""
+        return Happened(np.flatnonzero(self.tags_entered).tolist())
+
+    @cached_property
+    def searches(self) -> "Happened":
+        """Who searched."""
+        return Happened(np.flatnonzero(self.searched).tolist())
 
     @cached_property
     def contact_mask(self) -> Indices:
@@ -116,9 +126,16 @@ class Block:
         return fallen | np.uint32((self.level > 0) << FrameFlag.DEGRADED)
 
 
-def _before(held: Flags) -> list[int]:
-    counts: list[int] = np.cumsum(held).tolist()
-    return [0, *counts]
+class Happened(NamedTuple):
+    """What happened in a tick; sessions ask for their part of it, which is small."""
+
+    rows: list[int]
+    """Of the block, ascending."""
+    what: Sequence[int] = ()
+
+    def within(self, rows: slice) -> range:
+        """Return the places of what happened to some rows."""
+        return range(bisect_left(self.rows, rows.start), bisect_left(self.rows, rows.stop))
 
 
 class Tick:
