@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from capacity_budget import FRAME_S, budget_us, driven, tick_us
+from capacity_judged import judged
 from capacity_load import REPORTS, STITCHER, load, standard_library
 from points import ROOT, Point, show
 from search_libraries import MILLION, reduced
@@ -240,6 +241,7 @@ if __name__ == "__main__":
             "capacity",
             [
                 gates,
+                judged,
                 budget,
                 characters,
                 libraries,
