@@ -11,7 +11,8 @@ from stridewire_engine.runtime.settings import LEVELS
 
 _MEMORY_S = 0.2
 """Time constant of the share."""
-_TOO_MUCH, _ENOUGH = 0.9, 0.65
+_TOO_MUCH, _ENOUGH = 0.8, 0.6
+"""The rest is the transport's: its threads want the interpreter, too."""
 _UP_S, _DOWN_S = 0.1, 0.25
 """Least time between two changes, since the share answers with a delay."""
 

@@ -19,7 +19,7 @@ from stridewire._messages import CharacterSpec, ClipTime, Open, SearchQuery, Ste
 from stridewire.motion.array_types import Floats
 from stridewire_engine.building import open_library
 from stridewire_engine.matching import proof
-from stridewire_engine.matching.candidates import CandidateSet
+from stridewire_engine.matching.candidates import CandidateSet, Index
 from stridewire_engine.matching.features import clip_features
 from stridewire_engine.matching.index import ExactIndex, augment_queries
 from stridewire_engine.matching.search import Matcher
@@ -236,7 +236,7 @@ def _exact_of(matcher: Matcher, among: CandidateSet) -> CandidateSet:
     """Return the same rows, scanned one by one."""
     features = matcher.library.features
     index = ExactIndex(matcher.schema, features, matcher.bias, among.rows)
-    return CandidateSet(among.text, among.satisfied, among.rows, index, None, None)
+    return CandidateSet(among.text, among.satisfied, among.rows, None, lambda: Index(index))
 
 
 def _time(call: Callable[[], object], rounds: int = ROUNDS) -> float:

@@ -1,6 +1,9 @@
 """Candidate sets: the rows that a search may choose under a filter, indexed on demand."""
 
 from collections import OrderedDict
+from collections.abc import Callable
+from functools import cached_property, partial
+from typing import NamedTuple
 
 import faiss
 import numpy as np
@@ -22,6 +25,13 @@ _OWN_LISTS_SHARE = 0.8
 _CACHED_SETS = 64
 
 
+class Index(NamedTuple):
+    """What gives the nearest of some rows, and which rows a larger index is held to."""
+
+    rows: ExactIndex | InvertedLists
+    selector: "faiss.IDSelector | None" = None
+
+
 class CandidateSet:
     """Rows that satisfy one filter."""
 
@@ -30,34 +40,42 @@ class CandidateSet:
         text: str,
         satisfied: Flags,
         rows: Indices,
-        index: ExactIndex | InvertedLists,
-        selector: "faiss.IDSelector | None",
         boxes: Boxes | None,
+        make_index: Callable[[], Index],
     ) -> None:
+        """Take what was found for a filter.
+
+        Args:
+            text: The filter's expression; empty for all rows.
+            satisfied: `(F,)`: rows for which the filter holds, startable or not.
+            rows: Rows that may be chosen, ascending.
+            boxes: The same, for searches of one row; None where nothing is compiled.
+            make_index: Called when more rows than one are first asked for.
+        """
         self.text = text
-        """The filter's expression; empty for all rows."""
         self.satisfied = satisfied
-        """`(F,)`: rows for which the filter holds, startable or not."""
         self.rows = rows
-        """Rows that may be chosen, ascending."""
         self.boxes = boxes
-        """The same, for searches of one row; None where nothing is compiled."""
-        self._index = index
-        self._selector = selector
+        self._make_index = make_index
 
     def __len__(self) -> int:
         """Return the number of rows that may be chosen."""
         return len(self.rows)
 
+    @cached_property
+    def index(self) -> Index:
+        """What gives more rows than one."""
+        return self._make_index()
+
     @property
     def is_exact(self) -> bool:
         """Whether every row is looked at."""
-        return isinstance(self._index, ExactIndex)
+        return isinstance(self.index.rows, ExactIndex)
 
     def look_into(self, probes: int) -> None:
         """Set into how many lists a search looks, where there are lists."""
-        if isinstance(self._index, InvertedLists):
-            self._index.probes = probes
+        if isinstance(self.index.rows, InvertedLists):
+            self.index.rows.probes = probes
 
     def nearest(self, augmented: Floats, k: int, *, exhaustive: bool = False) -> Indices:
         """Return `(N, min(k, rows))` rows nearest to augmented queries; -1 where none were found.
@@ -67,9 +85,10 @@ class CandidateSet:
             k: Number of rows.
             exhaustive: Look into every list.
         """
-        if isinstance(self._index, ExactIndex):
-            return self._index.search(augmented, k)
-        return self._index.search(augmented, min(k, len(self)), self._selector, exhaustive)
+        index = self.index.rows
+        if isinstance(index, ExactIndex):
+            return index.search(augmented, k)
+        return index.search(augmented, min(k, len(self)), self.index.selector, exhaustive)
 
 
 class Candidates:
@@ -95,8 +114,8 @@ class Candidates:
             grouping = Grouping(lists.centroids, lists.lists)
             self.lists = InvertedLists(schema, library.features, bias, rows, grouping, lists.probes)
         everything = np.ones(len(library.features), np.bool_)
-        index = self.lists or ExactIndex(schema, library.features, bias, rows)
-        self.everything = CandidateSet("", everything, rows, index, None, self._boxes(rows))
+        index = Index(self.lists or ExactIndex(schema, library.features, bias, rows))
+        self.everything = CandidateSet("", everything, rows, self._boxes(rows), lambda: index)
 
     def get(self, text: str, path: str) -> CandidateSet:
         """Return the set of a filter; the most recent ones are kept.
@@ -137,18 +156,18 @@ class Candidates:
             satisfied: `(F,)` rows that belong to it, startable or not.
             rows: Those that may be chosen, ascending.
         """
-        boxes = self._boxes(rows)
+        return CandidateSet(text, satisfied, rows, self._boxes(rows), partial(self._index, rows))
+
+    def _index(self, rows: Indices) -> Index:
+        library = self._library
         if self.lists is None or len(rows) <= EXACT_ROWS:
-            features = self._library.features
-            exact = ExactIndex(self._schema, features, self._bias, rows)
-            return CandidateSet(text, satisfied, rows, exact, None, boxes)
+            return Index(ExactIndex(self._schema, library.features, self._bias, rows))
         if len(rows) < _OWN_LISTS_SHARE * len(self.everything):
-            return CandidateSet(text, satisfied, rows, self._own_lists(rows), None, boxes)
-        allowed = np.zeros(len(satisfied), np.bool_)
+            return Index(self._own_lists(rows))
+        allowed = np.zeros(len(library.features), np.bool_)
         allowed[rows] = True
         # FAISS keeps a pointer to the bitmap; its Python wrapper keeps the array alive
-        selector = faiss.IDSelectorBitmap(np.packbits(allowed, bitorder="little"))
-        return CandidateSet(text, satisfied, rows, self.lists, selector, boxes)
+        return Index(self.lists, faiss.IDSelectorBitmap(np.packbits(allowed, bitorder="little")))
 
     def _boxes(self, rows: Indices) -> Boxes | None:
         """Put rows into boxes where they are scanned by compiled code."""
