@@ -77,4 +77,4 @@ def _draw_usage(axes: "Axes", measured: Measured) -> None:
     memory.plot(seconds, usage.rss_mb, color="C1", label="memory of the server")
     memory.set(ylabel="MB")
     memory.set_ylim(bottom=0.0)
-    axes.figure.legend(loc="lower right", frameon=False, fontsize=8)
+    memory.legend(handles=[*axes.lines, *memory.lines], loc="center right", frameon=False)

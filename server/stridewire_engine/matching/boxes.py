@@ -62,6 +62,12 @@ class Boxes:
             largest=int(sizes.max()),
         )
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes beside the library's own."""
+        own = ("rows", "starts", "columns", "biases", "middle", "half", "least_bias")
+        return sum(getattr(self._boxed, name).nbytes for name in own)
+
     def best(
         self, queries: Floats, weights: Floats, excluded: Indices, neighbourhood: int
     ) -> tuple[Indices, Floats, Floats]:

@@ -9,6 +9,7 @@ from stridewire._messages import CharacterSpec, Open
 from stridewire_engine.library import Library
 from stridewire_engine.matching.index import augment_rows
 from stridewire_engine.matching.schema import Schema
+from stridewire_engine.matching.search import Matcher
 from stridewire_engine.runtime import Runtime
 from stridewire_engine.runtime.characters import Characters
 from stridewire_server.benchmarks.comparison import Compared
@@ -37,6 +38,12 @@ def memory(library: Library) -> Iterator[Compared]:
     yield Compared(
         "memory", "a minute of capture, index", "bytes", "its poses alone", share, frames
     )
+    boxes = Matcher(library).candidates.everything.boxes
+    if boxes is not None:
+        share = boxes.nbytes / minutes
+        yield Compared(
+            "memory", "a minute of capture, boxes", "bytes", "its poses alone", share, frames
+        )
 
 
 def _session(library: Library) -> float:
