@@ -79,27 +79,24 @@ def scan(
         for d in range(len(query)):
             query[d], weight[d] = queries[i, d], weights[i, boxed.channel_of[d]]
         _bound(boxed, query, weight, bounds)
-        count = groups
-        for g in range(groups):
-            left[g] = g
-        best, at, opened = math.inf, -1, 0
-        while count > 0:
-            nearest = 0
-            for k in range(1, count):
-                if bounds[left[k]] < bounds[left[nearest]]:
-                    nearest = k
-            group = left[nearest]
-            if bounds[group] * _SLACK - _LEAST > best:
-                break
+        group = 0
+        for g in range(1, groups):
+            if bounds[g] < bounds[group]:
+                group = g
+        best, at = _open(
+            boxed, neighbourhood, query, weight, queries, weights, excluded, i, group, near,
+            math.inf, -1,
+        )  # fmt: skip
+        count = _heap(bounds, group, best, left)
+        while count > 0 and bounds[left[0]] * _SLACK - _LEAST <= best:
+            group = left[0]
             count -= 1
-            left[nearest] = left[count]
+            left[0] = left[count]
+            _sink(bounds, left, 0, count)
             best, at = _open(
                 boxed, neighbourhood, query, weight, queries, weights, excluded, i, group, near,
                 best, at,
             )  # fmt: skip
-            opened += 1
-            if opened == 1:
-                count = _keep(bounds, left, count, best)
         rows[i, 0], costs[i, 0] = at, best
         _tell(boxed, queries, weights, i, at, channel_costs)
 
@@ -118,14 +115,35 @@ def _bound(boxed: Boxed, query: Floats, weight: Floats, bounds: Floats) -> None:
 
 
 @kernel
-def _keep(bounds: Floats, left: Indices, count: int, best: float) -> int:
-    """Keep the groups that may still hold something better, at the front; return how many."""
-    kept = 0
-    for k in range(count):
-        if bounds[left[k]] * _SLACK - _LEAST <= best:
-            left[kept] = left[k]
-            kept += 1
-    return kept
+def _heap(bounds: Floats, opened: int, best: float, left: Indices) -> int:
+    """Make a heap of the other groups that may hold something better, the nearest on top.
+
+    Returns how many there are.
+    """
+    count = 0
+    for g in range(len(bounds)):
+        if g != opened and bounds[g] * _SLACK - _LEAST <= best:
+            left[count] = g
+            count += 1
+    for k in range(count // 2 - 1, -1, -1):
+        _sink(bounds, left, k, count)
+    return count
+
+
+@kernel
+def _sink(bounds: Floats, left: Indices, at: int, count: int) -> None:
+    """Let a group sink in the heap until both below it are no nearer."""
+    group = left[at]
+    while 2 * at + 1 < count:
+        below = 2 * at + 1
+        if below + 1 < count and bounds[left[below + 1]] < bounds[left[below]]:
+            below += 1
+        if bounds[left[below]] >= bounds[group]:
+            break
+        left[at] = left[below]
+        at = below
+    if at < count:
+        left[at] = group
 
 
 @kernel

@@ -14,6 +14,8 @@ from stridewire_engine.matching.schema import Schema
 
 RUN = 16
 """Frames of a group where rows are grouped by their order alone."""
+_MOST = 64
+"""Rows of a box; larger groups have several, of frames that follow each other."""
 
 
 class Boxes:
@@ -39,13 +41,14 @@ class Boxes:
             groups: `(M,)` number of the group of each; groups without rows may be left out.
         """
         order = np.argsort(groups, kind="stable")
-        sizes = np.unique(groups, return_counts=True)[1]
-        starts = np.concatenate([[0], np.cumsum(sizes)])
+        first = np.flatnonzero(np.diff(groups[order], prepend=-1))
+        within = np.arange(len(rows)) - np.repeat(first, np.diff(first, append=len(rows)))
+        starts = np.append(np.flatnonzero(within % _MOST == 0), len(rows))
         grouped = rows[order]
         stored = np.ascontiguousarray(features[grouped], np.float32)
         low = np.minimum.reduceat(stored, starts[:-1])
-        middle = low + 0.5 * (np.maximum.reduceat(stored, starts[:-1]) - low)
-        off = np.abs(stored - np.repeat(middle, sizes, axis=0))
+        high = np.maximum.reduceat(stored, starts[:-1])
+        middle = low + 0.5 * (high - low)
         biases = bias[grouped].astype(np.float32)
         self._boxed = Boxed(
             features=features,
@@ -57,9 +60,9 @@ class Boxes:
             columns=_by_number(stored, starts),
             biases=biases,
             middle=np.ascontiguousarray(middle.T),
-            half=np.ascontiguousarray(np.maximum.reduceat(off, starts[:-1]).T),
+            half=np.ascontiguousarray(np.maximum(high - middle, middle - low).T),
             least_bias=np.minimum.reduceat(biases, starts[:-1]),
-            largest=int(sizes.max()),
+            largest=_MOST,
         )
 
     @property
