@@ -44,7 +44,7 @@ class Boxed(NamedTuple):
     least_bias: Floats
     """`(G,)` float32."""
     largest: int
-    """Rows of the largest group."""
+    """More rows no group has."""
 
 
 @kernel
